@@ -79,7 +79,8 @@ static void extend_struct(st_t *st, type_t *type, int depth)
         cm1e_st_report(st, type->place, "\"%s\" extends itself", type->name);
         return;
     }
-    if (!base || base->kind != T_STRUCT || base == type || depth == ST_DEPTH) {
+    const bool is_structure = base && base->kind == T_STRUCT && !base->overlay && !base->external;
+    if (!is_structure || base == type || depth == ST_DEPTH) {
         cm1e_near_t near = {.word = name};
         cm1e_st_map_each(st->types, look_at_struct, &near);
         cm1e_st_report(st, type->place, "there is no structure \"%s\" that \"%s\" could extend%s", name, type->name,

@@ -366,6 +366,8 @@ SOURCES = [
     ("TYPE A EXTENDS A : STRUCT x : INT; END_STRUCT; END_TYPE", "1:6", ["no structure"]),
     ("TYPE A EXTENDS B : STRUCT x : INT; END_STRUCT; B : STRUCT X : INT; END_STRUCT; END_TYPE", "1:27", ['A has "x" already']),
     ("TYPE A EXTENDS INT : STRUCT x : INT; END_STRUCT; END_TYPE", "1:6", ["no structure"]),
+    ("TYPE A EXTENDS B : STRUCT x : INT; END_STRUCT; B : UNION y : INT; END_UNION; END_TYPE", "1:6", ["no structure"]),
+    ("TYPE A EXTENDS AXIS_REF : STRUCT x : INT; END_STRUCT; END_TYPE", "1:6", ["no structure"]),
     ("TYPE A IMPLEMENTS B : STRUCT x : INT; END_STRUCT; B : STRUCT y : INT; END_STRUCT; END_TYPE", "1:8", ["EXTENDS"]),
     ("CONFIGURATION C RESOURCE R AN PC PROGRAM p : P; END_RESOURCE END_CONFIGURATION PROGRAM P END_PROGRAM", "1:28", ["expected ON"]),
     ("TYPE A : (Off, On); END_TYPE PROGRAM P VAR a : A; END_VAR a := Onn; END_PROGRAM", "1:64", ['did you mean "On"']),
