@@ -38,10 +38,15 @@ void cm1e_st_emit_assignment(st_t *st, const expr_t *target, const expr_t *value
         cm1e_st_put(st, ");\n");
         return;
     }
+    const bool aggregate = target->type->kind == T_STRUCT || target->type->kind == T_ARRAY;
+    const bool may_overlap = aggregate && cm1e_st_is_variable(value); /* in a UNION, or in %M: "=" of C must not */
     cm1e_st_begin_line(st);
+    cm1e_st_put(st, may_overlap ? "memmove(&" : "");
     cm1e_st_emit_expression(st, target);
-    cm1e_st_put(st, " = ");
+    cm1e_st_put(st, may_overlap ? ", &" : " = ");
     cm1e_st_emit_expression(st, value);
+    if (may_overlap)
+        cm1e_st_put(st, ", sizeof(%s))", cm1e_st_c_type(st, target->type));
     cm1e_st_put(st, ";\n");
 }
 

@@ -61,6 +61,16 @@ FUNCTION_BLOCK FB_A METHOD M : INT VAR_INST c : INT := 3; q : REFERENCE TO INT; 
   VAR r : REF_TO INT; END_VAR r := REF(c); r^ := r^ + 1; r := ADR(s); r^ := 5; q REF= c; q := q + 10; M := c; END_METHOD END_FUNCTION_BLOCK
 PROGRAM Main VAR a : FB_A; n : INT; END_VAR n := a.M(); END_PROGRAM
 """, 1, {"Main.n": 14, "Main.a.FB_A.M.c": 14, "FB_A.M.s": 5}),
+    # What is assigned may lie partly in what it is assigned to.
+    ("overlapping", """
+TYPE ST_List : STRUCT a : ARRAY[0..99] OF INT; END_STRUCT; ST_Behind : STRUCT k : INT; l : ST_List; END_STRUCT;
+  U_Both : UNION l : ST_List; behind : ST_Behind; END_UNION END_TYPE
+PROGRAM Main VAR u : U_Both; m AT %MB0 : ARRAY[0..99] OF INT; n AT %MB2 : ARRAY[0..99] OF INT; i, bad : INT; END_VAR
+  FOR i := 0 TO 99 DO u.behind.l.a[i] := i; n[i] := i; END_FOR u.l := u.behind.l; m := n;
+  FOR i := 0 TO 99 DO IF u.l.a[i] <> i OR m[i] <> i THEN bad := bad + 1; END_IF END_FOR
+  u.behind.l := u.l; n := m;
+  FOR i := 0 TO 99 DO IF u.behind.l.a[i] <> i OR n[i] <> i THEN bad := bad + 1; END_IF END_FOR END_PROGRAM
+""", 1, {"Main.bad": 0}),
     ("open", """
 TYPE ST_P : STRUCT a : INT; l : ARRAY[2..4] OF INT := [7,8,9]; END_STRUCT END_TYPE
 VAR_GLOBAL CONSTANT gTab : ARRAY[-1..1] OF INT := [10, 20, 30]; END_VAR
