@@ -237,6 +237,12 @@ static void found_member(st_t *st, expr_t *expr, const type_t *type)
         name(st, expr);
         return;
     }
+    if (expr->var->section == V_TEMP) {
+        cm1e_st_report(st, expr->place, "\"%s\" is VAR_TEMP of %s: its statements know it, by its name alone",
+                       expr->var->name, type->name);
+        set_wrong(st, expr);
+        return;
+    }
     if (type->kind == T_BLOCK && expr->a->kind != E_THIS && expr->var->section != V_INPUT &&
         expr->var->section != V_OUTPUT && !(expr->var->qualifiers & Q_PUBLIC)) {
         cm1e_st_report(st, expr->place, expr->var->section == V_IN_OUT ?

@@ -359,6 +359,9 @@ SOURCES = [
     ("FUNCTION F VAR_IN_OUT a : ARRAY[1..3] OF INT; END_VAR END_FUNCTION FUNCTION G VAR_IN_OUT a : ARRAY[*] OF INT; END_VAR F(a); END_FUNCTION", "1:121", ["needs a variable of this type"]),
     ("PROGRAM P VAR a : (Idle, Run); Idle : INT; END_VAR a := Idle; END_PROGRAM", "1:57", ["hides the enumerator", "!unnamed"]),
     ("PROGRAM P VAR a : (Idle, Run); END_VAR a := a.Run; END_PROGRAM", "1:47", ["is the variable here; the enumerator is Run", "!unnamed"]),
+    ("FUNCTION_BLOCK A VAR_TEMP n : INT; END_VAR THIS^.n := 1; END_FUNCTION_BLOCK", "1:50", ["VAR_TEMP of A: its statements know it"]),
+    ("FUNCTION_BLOCK A VAR_TEMP PUBLIC n : INT; END_VAR END_FUNCTION_BLOCK PROGRAM P VAR a : A; i : INT; END_VAR i := a.n; "
+     "END_PROGRAM", "1:115", ["VAR_TEMP of A: its statements know it"]),
     ("TYPE U : UNION n : LINT; axis : AXIS_REF; END_UNION; END_TYPE", "1:26", ["not all bits are a value of AXIS_REF"]),
     ("TYPE U : UNION n : LINT; g : ARRAY[1..2] OF AXES_GROUP_REF; END_UNION; END_TYPE", "1:26", ["not all bits are a value"]),
     ("TYPE A EXTENDS Bace : STRUCT x : INT; END_STRUCT; Base : STRUCT y : INT; END_STRUCT; END_TYPE", "1:6", ["no structure", 'did you mean "Base"']),
