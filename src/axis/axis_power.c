@@ -448,6 +448,17 @@ bool cm1e_axis_catches(const cm1e_axis_t *axis)
            fabs(axis_actual_velocity(axis)) <= axis->power.velocity;
 }
 
+/* counts/s; the velocity that the drive shows or that of the way since the cycle before, if that is less. 0: it is not
+ * known. Where positions tell it, the first one behind a silence is the mean of all its cycles, and a frame that comes
+ * too early shows it once more. */
+static double velocity_of_cycle(const cm1e_axis_t *axis)
+{
+    const double shown = axis_actual_velocity(axis);
+    const double by_way = cm1e_position_minus(axis_actual(axis), axis->setpoint.position) / axis->cycle_s;
+    return axis->silence.silent_before > 0 || shown * by_way <= 0.0 ? 0.0
+                                                                     : copysign(fmin(fabs(shown), fabs(by_way)), shown);
+}
+
 bool cm1e_axis_swings(const cm1e_axis_t *axis) { return axis->power.held && axis_holds(axis); }
 
 void cm1e_axis_power_step(cm1e_axis_t *axis)
@@ -464,9 +475,8 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
         cm1e_axis_become_free(axis);
     else if (!free && !drive_moves(axis) && !acting)
         cm1e_axis_become_free(axis); /* the torque was lost during a ramp */
-    const bool mean = axis->silence.silent_before > 0; /* of all cycles of the silence, where positions tell it */
     if (axis_free(axis))
-        axis->power.velocity = acting && shows_motor(axis) && !mean ? (float)axis_actual_velocity(axis) : 0.0f;
+        axis->power.velocity = acting && shows_motor(axis) ? (float)velocity_of_cycle(axis) : 0.0f;
     const bool at_work = wanted && axis->power.energized;
     if (at_work || (axis_free(axis) ? !acting : !set_points_move(axis)))
         axis->power.undecided = !at_work && (!shows_motor(axis) || is_fast(axis));
