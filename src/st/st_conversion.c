@@ -43,7 +43,8 @@ const char *cm1e_st_hidden_enumerator(const type_t *type, const expr_t *expr, ch
     for (const var_t *one = type->kind == T_ENUM && expr->kind == E_NAME ? type->members : NULL; one; one = one->next)
         if (strcasecmp(one->name, expr->name) == 0)
             snprintf(text, size, type->shown ? "; \"%.60s\" is the variable here, and hides the enumerator" :
-                     "; \"%.60s\" is the variable here, the enumerator is %.60s#%.60s", expr->name, type->name, one->name);
+                     "; \"%.60s\" is the variable here, the enumerator is %.60s#%.60s",
+                      expr->name, type->name, one->name);
     return text;
 }
 

@@ -73,8 +73,8 @@ typedef struct dimension {
 struct type {
     type_kind_t kind;
     const char *name;        /**< as declared; of an array or a string made from its parts */
-    const char *shown;       /**< of a subrange, whose name is that of its base: "INT (0..100)"; of an enumeration without
-                                  a name: "(Idle, ...)"; else NULL */
+    const char *shown;       /**< of a subrange, whose name is that of its base: "INT (0..100)"; of an enumeration
+                                  without a name: "(Idle, ...)"; else NULL */
     const char *c_name;      /**< in the emitted C */
     place_t place;
     const scope_t *scope;    /**< where it is written */
