@@ -48,9 +48,12 @@ void analog_cycle(run_t *run)
     if (run->cycle == 0)
         find(run, channels);
     const bool late = run->axes[0].seen.stalled == 0;
-    terminal.calm = is_good(&terminal.in[0]) && run->bad[0] == 0 && !late ? terminal.calm + 1 : 0;
+    /* That it has left Operational is seen when it is asked, as one slave of its network is in every cycle. */
+    const int calm = CALM + (int)cm1e_bus_slave_count(run->buses[0]);
+    const bool works = is_good(&terminal.in[0]) && is_good(&terminal.out[0]);
+    terminal.calm = works && run->bad[0] == 0 && !late ? terminal.calm + 1 : 0;
     for (int i = 0; i < channels && !run->outcome->failed; i++) {
-        if (terminal.calm > CALM)
+        if (terminal.calm > calm)
             judge_input(run, i);
         if (cm1e_io_set_integer(&terminal.out[i], number_of(run->cycle, i)) != CM1E_OK)
             scenario_fail(run, "analog", "output %d cannot be written", i + 1);

@@ -457,14 +457,15 @@ bool fault_explains(const run_t *run, const machine_axis_t *axis, bool of_bus)
     return false;
 }
 
-/** In the cycle of the fault it has begun to brake before a limit, because its coupling asks too much, with another axis of
- *  it, or without its master: the first cause stays, the log has the other one. */
+/** In the cycle of the fault it has begun to brake before a limit, because its coupling or a set-point from outside asks too
+ *  much, with another axis of it, or without its master: the first cause stays, the log has the other one. */
 static bool braked_before(const run_t *run, const fault_t *fault, const machine_axis_t *axis)
 {
     return run->cycle == (int)fault->at + 1 && (axis->info.error == CM1E_ERROR_AXIS_POSITION_RANGE ||
                                                 axis->info.error == CM1E_ERROR_AXIS_COUPLING_LIMIT ||
                                                 axis->info.error == CM1E_ERROR_AXIS_COUPLED ||
-                                                axis->info.error == CM1E_ERROR_AXIS_MASTER_LOST);
+                                                axis->info.error == CM1E_ERROR_AXIS_MASTER_LOST ||
+                                                axis->info.error == CM1E_ERROR_AXIS_SET_POINT_LIMIT);
 }
 
 static void judge_text(run_t *run, int number, const machine_axis_t *axis)
