@@ -344,7 +344,7 @@ static bool shows_motor(const cm1e_axis_t *axis)
 static bool comes_back(cm1e_axis_t *axis, double away, double velocity)
 {
     power_t *power = &axis->power;
-    const bool caught = axis->state == CM1E_AXIS_DISABLED && !power->energized; /* else it has been lost: axis_pursuit.h */
+    const bool caught = axis->state == CM1E_AXIS_DISABLED && !power->energized; /* else its bus was lost: a pursuit */
     if (!caught || !shows_motor(axis) || axis->drive.actual.contradictions > 0)
         return false;
     if (away * velocity > 0.0)
