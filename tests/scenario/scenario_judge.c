@@ -15,7 +15,8 @@
 #define SERVO_GAIN 1.15           /* of the maximum acceleration, within GAIN_MS */
 #define SERVO_BANDWIDTH 500.0     /* rad/s, of its position loop */
 #define STALL_OVERSHOOT 0.05      /* docs/SAFETY.md: 5 % above the earlier speed after a pause of the host */
-#define SWING_OVERSHOOT 0.11      /* a heavy load that the drive alone swings in a long pause (docs/SAFETY.md) */
+#define SWING_OVERSHOOT 0.11      /* a heavy load that the drive alone swings in a long pause (docs/SAFETY.md), or whose
+                                   * position was untrue in the pause */
 /* Of the own motion of a drive whose load lets it lag: with torque for the acceleration A, below a of the profile, it
  * reaches the speed v behind by v^2 / 2 (1 / A - 1 / a), and A makes at most v sqrt(1 - A / a) more of that. */
 #define HOMING_OVERSHOOT 1.0
@@ -206,7 +207,8 @@ static allowance_t allowed_share(const run_t *run, const machine_axis_t *axis)
     if (axis->seen.rung < lately)
         return (allowance_t){RING_OVERSHOOT, SPEED_IN_RING};
     const double pause = axis->seen.pause;
-    const bool swings = pause >= cycles_of(run, SWING_MS) && is_heavy(run, axis->spec, pause);
+    const bool long_pause = pause >= cycles_of(run, SWING_MS);
+    const bool swings = (long_pause || is_caught(run, axis)) && is_heavy(run, axis->spec, pause);
     if (axis->seen.stalled < cycles_of(run, STALL_MS))
         return (allowance_t){swings ? SWING_OVERSHOOT : STALL_OVERSHOOT, SPEED_AFTER_PAUSE};
     const bool waits = run->networks > 1 && axis->seen.jolted < lately, silent = axis->seen.quiet < lately;
