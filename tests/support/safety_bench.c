@@ -62,6 +62,7 @@ static void witness_limits(const bench_t *bench, uint32_t n, witness_t *w)
     const double cycle_s = (double)bench->config.cycle_time_ns * 1e-9;
     const double gain = or_else(axis->max_acceleration * unit, 5e6 * count);
     w->bridged = axis->channel != 0;
+    w->peak_step = peak * cycle_s;
     w->max_step = fmin(or_else(axis->max_velocity * unit, peak), peak) * cycle_s;
     w->max_gain = gain * cycle_s * cycle_s;
     w->max_loss = or_else(axis->max_deceleration * unit, gain) * cycle_s * cycle_s;
@@ -243,6 +244,14 @@ static bool brakes(const bench_t *bench, const witness_t *w)
     return step * w->shaft > 0 && fabs(step) <= fabs(w->shaft) + least;
 }
 
+/** A motor that its axis catches when it gets its torque has turned round: its target meets it there (docs/SAFETY.md). It
+ *  comes nearer, and is no farther beyond than the way of the motor in a cycle. */
+static bool meets(const witness_t *w, double off, double step, double shaft)
+{
+    return fabs(off) < fabs(off - step) && (off * (off - step) >= 0 || fabs(off) <= shaft + 1) &&
+           fabs(step) <= w->peak_step + 1;
+}
+
 bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w, double step)
 {
     cm1e_axis_info_t info = {0};
@@ -253,6 +262,8 @@ bool began_anew(const bench_t *bench, uint32_t n, const witness_t *w, double ste
     const double shaft = fabs((double)(int32_t)((uint32_t)w->position - (uint32_t)w->position_before));
     if (!moving && step * (off - step) < 0 && fabs(off) <= fabs(off - step) && fabs(step) <= w->max_step + 1.0)
         return true; /* on the way back there, no faster than the axis may go */
+    if (info.state == CM1E_AXIS_DISABLED && meets(w, off, step, shaft))
+        return true;
     /* A motor that has just got its torque is seen every cycle: its target is no farther ahead than its way in one. */
     const double most = info.state == CM1E_AXIS_DISABLED ? shaft : fmax(w->max_step, 3 * shaft);
     return !moving && (step == 0 || fabs(off) <= most + 1.0);

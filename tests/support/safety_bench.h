@@ -39,6 +39,7 @@ typedef struct witness {
     int in_statusword, in_position, in_mode;
     double velocity_unit;              /**< counts/s of one unit of 0x60FF */
     double max_step, max_gain, max_loss; /**< counts a cycle, and more or less of it a cycle */
+    double peak_step;                    /**< counts a cycle: the motor can do no more */
     double max_lag;                    /**< counts */
     int8_t mode;                       /**< of the set-points */
     bool shown;                        /**< the drive has shown something */
