@@ -62,6 +62,9 @@ static void move_load(const run_t *run, machine_axis_t *axis)
     const double load = fmax(motor, fmin(axis->seen.load, motor + axis->spec->backlash));
     axis->seen.unseen = axis->seen.unseen || (load != axis->seen.load && (run->bad[axis->network] > 0 || !axis->info.online));
     axis->seen.load = load;
+    /* MC_Power has ended a crossing, and may be back before the torque has gone: the axis shows the rest of it then. */
+    const bool cut = axis->info.state == CM1E_AXIS_DISABLED && axis->probe.torque_on && load > motor && load < motor + axis->spec->backlash;
+    axis->seen.unseen = axis->seen.unseen || cut;
 }
 
 static void look_at_axis(run_t *run, machine_axis_t *axis)
