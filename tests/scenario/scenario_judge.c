@@ -55,24 +55,12 @@ static void hash(run_t *run, const void *data, size_t size)
         run->outcome->hash = (run->outcome->hash ^ ((const unsigned char *)data)[i]) * UINT64_C(0x100000001B3);
 }
 
-/** A motor pushes its load with either flank of the gap: at the start with the one of the positive direction. */
-static void move_load(const run_t *run, machine_axis_t *axis)
-{
-    const double motor = axis->probe.position_counts * (axis->spec->invert != 0 ? -1 : 1);
-    const double load = fmax(motor, fmin(axis->seen.load, motor + axis->spec->backlash));
-    axis->seen.unseen = axis->seen.unseen || (load != axis->seen.load && (run->bad[axis->network] > 0 || !axis->info.online));
-    axis->seen.load = load;
-    /* MC_Power has ended a crossing, and may be back before the torque has gone: the axis shows the rest of it then. */
-    const bool cut = axis->info.state == CM1E_AXIS_DISABLED && axis->probe.torque_on && load > motor && load < motor + axis->spec->backlash;
-    axis->seen.unseen = axis->seen.unseen || cut;
-}
-
 static void look_at_axis(run_t *run, machine_axis_t *axis)
 {
     cm1e_axis_read(axis->reference, &axis->info);
     if (is_motor(axis))
         cm1e_sim_probe_channel(run->segments[axis->network], axis->position, axis->channel, &axis->probe);
-    move_load(run, axis);
+    judge_move_load(run, axis);
     hash(run, &axis->info.state, sizeof axis->info.state);
     hash(run, &axis->info.set_position, sizeof axis->info.set_position);
     hash(run, &axis->info.set_velocity, sizeof axis->info.set_velocity);

@@ -228,6 +228,8 @@ void analog_cycle(run_t *run);
 
 /** MC_Power.Status is not TRUE before the motor rests. */
 void judge_enable(run_t *run, machine_axis_t *axis);
+/** A motor pushes its load with either flank of the gap: at the start with the one of the positive direction. */
+void judge_move_load(const run_t *run, machine_axis_t *axis);
 /** Something that is not a motion has happened to it not long ago, and it comes back to its set-point. */
 bool was_disturbed(const run_t *run, const witness_t *seen);
 
