@@ -449,15 +449,16 @@ bool cm1e_axis_catches(const cm1e_axis_t *axis)
            fabs(axis_actual_velocity(axis)) <= axis->power.velocity;
 }
 
-/* counts/s; the velocity that the drive shows or that of the way since the cycle before, if that is less. 0: it is not
- * known. Where positions tell it, the first one behind a silence is the mean of all its cycles, and a frame that comes
- * too early shows it once more. */
+/* counts/s; the velocity that the drive shows, if the way since the cycle before says so too; 0: it is not known. Where
+ * positions tell it, the first one behind a silence is the mean of all its cycles, and a frame that comes too early
+ * shows it once more. Where there is backlash the way is that of the load, which a flank may just have met. */
 static double velocity_of_cycle(const cm1e_axis_t *axis)
 {
+    static const double close_part = 0.8;
     const double shown = axis_actual_velocity(axis);
     const double by_way = cm1e_position_minus(axis_actual(axis), axis->setpoint.position) / axis->cycle_s;
-    return axis->silence.silent_before > 0 || shown * by_way <= 0.0 ? 0.0
-                                                                     : copysign(fmin(fabs(shown), fabs(by_way)), shown);
+    const bool agrees = shown * by_way > 0.0 && fabs(by_way) >= close_part * fabs(shown);
+    return agrees && axis->silence.silent_before == 0 ? shown : 0.0;
 }
 
 bool cm1e_axis_swings(const cm1e_axis_t *axis) { return axis->power.held && axis_holds(axis); }
