@@ -42,6 +42,15 @@ static unit_t *named_unit(st_t *st, const unit_t *unit, const char *name, unit_k
     return NULL;
 }
 
+/** Of a variable that is inherited, in no list yet. */
+static var_t *copy_of(st_t *st, const var_t *var)
+{
+    var_t *copy = cm1e_st_take(st->arena, sizeof *copy);
+    *copy = *var;
+    copy->next = NULL;
+    return copy;
+}
+
 /** The variables of the base stand first, so that an instance begins as one of the base. */
 static void inherit_vars(st_t *st, unit_t *unit)
 {
@@ -50,9 +59,7 @@ static void inherit_vars(st_t *st, unit_t *unit)
         const bool is_kept = var->global && var->global->keeper; /* VAR_STAT */
         if (var->section == V_TEMP || (var->section == V_EXTERNAL && !is_kept))
             continue;
-        var_t *copy = cm1e_st_take(st->arena, sizeof *copy);
-        *copy = *var;
-        copy->next = NULL;
+        var_t *copy = copy_of(st, var);
         ST_APPEND(vars, copy);
     }
     if (!vars.last)
@@ -93,9 +100,7 @@ static void extend_struct(st_t *st, type_t *type, int depth)
     type->state = ST_NEW;
     vars_t members = {0};
     for (const var_t *var = base->members; var; var = var->next) {
-        var_t *copy = cm1e_st_take(st->arena, sizeof *copy);
-        *copy = *var;
-        copy->next = NULL;
+        var_t *copy = copy_of(st, var);
         ST_APPEND(members, copy);
     }
     if (!members.last)

@@ -557,17 +557,23 @@ static void test_a_motor_that_turns_is_not_at_the_target_of_its_drive(void)
     }
 }
 
+/* An axis with `motion: drive`, whose motor does what `world` says. */
+static void begin_drive_profiles(void (*world)(cm1e_bus_t *b))
+{
+    bench_end();
+    fake_bus_init(&bus, CM1E_MAPPING_PROFILE, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+    bus.config.axes[0].motion = CM1E_MOTION_DRIVE;
+    bus.config.axes[0].in_position_timeout_s = 0.5;
+    bus.world = world;
+}
+
 /* A drive that never shows its motor at rest does not keep the move Active for ever: not one that says "target reached"
  * from the beginning on, and not before the profile can have ended. */
 static void test_a_motor_that_never_rests_at_the_target_of_its_drive_is_an_error(void)
 {
     static const double ways[] = {0.1, 3.0};
     for (int i = 0; i < 2; i++) {
-        bench_end();
-        fake_bus_init(&bus, CM1E_MAPPING_PROFILE, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
-        bus.config.axes[0].motion = CM1E_MOTION_DRIVE;
-        bus.config.axes[0].in_position_timeout_s = 0.5;
-        bus.world = drive_lies;
+        begin_drive_profiles(drive_lies);
         swings_left = INT_MAX;
         bench_create();
         bench_enable();
@@ -599,11 +605,7 @@ static void drive_is_mute(cm1e_bus_t *b)
 static void test_a_drive_that_never_says_that_it_is_there_is_an_error(void)
 {
     for (int elsewhere = 0; elsewhere < 2; elsewhere++) {
-        bench_end();
-        fake_bus_init(&bus, CM1E_MAPPING_PROFILE, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
-        bus.config.axes[0].motion = CM1E_MOTION_DRIVE;
-        bus.config.axes[0].in_position_timeout_s = 0.5;
-        bus.world = drive_is_mute;
+        begin_drive_profiles(drive_is_mute);
         short_of = elsewhere ? 10000 : 0;
         bench_create();
         bench_enable();
