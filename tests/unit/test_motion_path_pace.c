@@ -257,6 +257,83 @@ static void test_lines_with_other_limits_take_hardly_longer_than_the_better_of_t
     TEST_ASSERT_TRUE(times <= better);
 }
 
+/** Powers of two, so that nothing is rounded otherwise. */
+static double in_length, in_time;
+
+static cm1e_path_command_t command_in_units(double velocity, double acceleration, double jerk,
+                                            cm1e_path_junction_t junction)
+{
+    const double speed = in_length / in_time, change = speed / in_time;
+    return command_of(velocity * speed, acceleration * change, jerk * change / in_time, junction, 0.1 * in_length);
+}
+
+/** Lines and arcs with corners and transitions, and runs with other limits. */
+static void append_in_units(void)
+{
+    double x = 0, y = 0, heading = 0;
+    for (int i = 0; i < SEGMENTS; i++) {
+        static const cm1e_path_junction_t junctions[] = {CM1E_PATH_EXACT, CM1E_PATH_CORNER_DISTANCE,
+                                                         CM1E_PATH_CORNER_DEVIATION, CM1E_PATH_CORNER_DEVIATION};
+        const double radius = random_between(0.5, 20), turn = random_between(0.1, 2), length = random_decade(0.01, 20);
+        const cm1e_path_command_t command = command_in_units(random_between(50, 300), random_between(500, 4000),
+                                                             random_between(5000, 80000), junctions[random_bits() % 4]);
+        if (one_in(3)) {
+            const double centre[] = {x - radius * sin(heading), y + radius * cos(heading), 0};
+            heading += turn;
+            x = centre[0] + radius * sin(heading), y = centre[1] - radius * cos(heading);
+            const double scaled[] = {centre[0] * in_length, centre[1] * in_length, 0};
+            TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_arc_centre(
+                                           &driven.path, scaled, (double[]){x * in_length, y * in_length, 0},
+                                           CM1E_PATH_COUNTER_CLOCKWISE, &command, NULL));
+            continue;
+        }
+        heading += one_in(3) ? 0 : random_between(-1.5, 1.5);
+        x += length * cos(heading), y += length * sin(heading);
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(
+                                       &driven.path, (double[]){x * in_length, y * in_length, 0}, &command, NULL));
+    }
+}
+
+/** With stops on the way; the number of cycles. */
+static int drive_in_units(void)
+{
+    const double speed = in_length / in_time, change = speed / in_time;
+    cm1e_path_config_t config = plain_config(3, 3, 500 * speed, 3000 * change, 60000 * change / in_time);
+    config.axis[1].acceleration /= 2;
+    config.cycle_s = 1e-3 * in_time;
+    begin_path(&config, (double[CM1E_PATH_AXES]){0});
+    append_in_units();
+    int steps = 0;
+    do {
+        cm1e_path_step(&driven.path, &driven.now);
+        if (steps % 150 == 75)
+            cm1e_path_stop(&driven.path, one_in(2) ? 0 : random_decade(300, 3000) * change,
+                           one_in(2) ? 0 : random_decade(3000, 90000) * change / in_time);
+        if (driven.now.phase == CM1E_PATH_STOPPED)
+            cm1e_path_go_on(&driven.path);
+        TEST_ASSERT_LESS_THAN_INT(PARTS, ++steps);
+    } while (driven.now.phase != CM1E_PATH_IDLE);
+    return steps;
+}
+
+/** To within a hundredth: cbrt() rounds small numbers otherwise, and then two stops may change places that take as
+ *  long. */
+static void test_no_path_depends_on_the_units_of_length_and_time(void)
+{
+    static const double units[][2] = {{1, 1}, {0x1p-18, 1}, {0x1p18, 1}, {1, 0x1p6}, {0x1p-12, 0x1p-6}};
+    for (int path = 0; path < PATHS; path++) {
+        const uint64_t state = random_state;
+        int steps = 0;
+        for (size_t k = 0; k < sizeof units / sizeof units[0]; k++) {
+            random_state = state;
+            in_length = units[k][0], in_time = units[k][1];
+            const int took = drive_in_units();
+            steps = k ? steps : took;
+            TEST_ASSERT_INT_WITHIN(steps / 100, steps, took);
+        }
+    }
+}
+
 int main(void)
 {
     seed_random();
@@ -269,5 +346,6 @@ int main(void)
     RUN_TEST(test_lines_with_other_limits_take_hardly_longer_than_the_better_of_two_ways);
     RUN_TEST(test_a_stop_on_a_circle_brakes_harder_the_slower_it_is);
     RUN_TEST(test_stops_in_bends_take_little_longer_than_on_a_line);
+    RUN_TEST(test_no_path_depends_on_the_units_of_length_and_time);
     return UNITY_END();
 }
