@@ -1,4 +1,3 @@
-#include <locale.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,6 +6,7 @@
 #include "busfile/busfile.h"
 #include "config/copy.h"
 #include "config/interface.h"
+#include "core/c_locale.h"
 #include "core/in_task.h"
 #include "device/place.h"
 
@@ -179,19 +179,17 @@ static cm1e_error_t load_bytes(cm1e_busfile_loaded_t *loaded, const uint8_t *byt
     return error;
 }
 
-/* strtod(), here and in libcyaml, takes the decimal point of the thread's locale: under a German one 4.5 would be 4. */
+/* libcyaml reads numbers by strtod(), too. */
 static cm1e_error_t load_in_c_locale(cm1e_busfile_loaded_t *loaded, const uint8_t *bytes, size_t size,
                                      cm1e_config_problem_t *problem)
 {
-    const locale_t c_locale = newlocale(LC_ALL_MASK, "C", (locale_t)0);
-    if (c_locale == (locale_t)0) {
+    c_locale_t locale;
+    if (!cm1e_c_locale_begin(&locale)) {
         snprintf(problem->text, sizeof problem->text, "out of memory");
         return CM1E_ERROR_NO_MEMORY;
     }
-    const locale_t callers = uselocale(c_locale);
     const cm1e_error_t error = load_bytes(loaded, bytes, size, problem);
-    uselocale(callers);
-    freelocale(c_locale);
+    cm1e_c_locale_end(&locale);
     return error;
 }
 

@@ -1,8 +1,8 @@
 /* A trace as a file: CSV for tables, NumPy for programs. Its pictures are drawn in src/plot. */
-#include <locale.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/c_locale.h"
 #include "core/output.h"
 #include "core/text.h"
 #include "scheduler/trace_recorder.h"
@@ -127,13 +127,11 @@ static void print_npy(const trace_t *trace, FILE *file)
 
 static void print_in_c_locale(const trace_t *trace, FILE *file, void (*print)(const trace_t *trace, FILE *file))
 {
-    const locale_t locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
-    const locale_t before = locale ? uselocale(locale) : (locale_t)0;
+    c_locale_t locale;
+    const bool point = cm1e_c_locale_begin(&locale);
     print(trace, file);
-    if (locale) {
-        uselocale(before);
-        freelocale(locale);
-    }
+    if (point)
+        cm1e_c_locale_end(&locale);
 }
 
 cm1e_error_t cm1e_trace_write_file(const trace_t *trace, const char *path,

@@ -8,6 +8,7 @@
 
 #include "cm1e/bus.h"
 #include "core/bytes.h"
+#include "core/c_locale.h"
 #include "sim/bridge_app.h"
 #include "sim/cia402_app.h"
 #include "sim/cm1e_app.h"
@@ -532,7 +533,11 @@ cm1e_error_t cm1e_sim_console(cm1e_sim_segment_t *segment, const char *line, cha
         answer[0] = '\0';
     if (!segment || !line)
         return REFUSE(&call, "a segment or a line is missing");
+    c_locale_t locale;
+    if (!cm1e_c_locale_begin(&locale))
+        return say(&call, "out of memory"), CM1E_ERROR_NO_MEMORY;
     const cm1e_error_t error = run_line(&call, line);
+    cm1e_c_locale_end(&locale);
     if (call.cut && call.size >= sizeof continued)
         memcpy(answer + size - sizeof continued, continued, sizeof continued);
     return error;

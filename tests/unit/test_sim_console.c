@@ -1,4 +1,5 @@
 /** The console of the simulated segment: every command, every kind of wrong line, and what a test measures behind. */
+#include <locale.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -312,6 +313,19 @@ static void test_unplugged_and_power_cycled_slaves_are_gone_and_come_back(void)
     TEST_ASSERT_EQUAL(4, slaves_that_answer());
 }
 
+static void test_numbers_have_a_point_in_every_locale(void)
+{
+    if (!setlocale(LC_ALL, "de_DE.UTF-8"))
+        TEST_IGNORE_MESSAGE("there is no locale with a decimal comma on this machine");
+    accept("load 1 0.25");
+    TEST_ASSERT_NOT_NULL_MESSAGE(strstr(answer, "0.25 Nm"), answer);
+    TEST_ASSERT_TRUE(say("load 1 0,25") != CM1E_OK);
+    accept("clock 1 drift 1.5");
+    TEST_ASSERT_EQUAL_STRING("de_DE.UTF-8", setlocale(LC_ALL, NULL));
+    TEST_ASSERT_EQUAL_STRING(",", localeconv()->decimal_point); /* that of the caller is back */
+    setlocale(LC_ALL, "C");
+}
+
 static void test_status_and_show(void)
 {
     accept("status");
@@ -398,6 +412,7 @@ int main(void)
     RUN_TEST(test_power_cycle_stops_torque_and_lets_the_axis_run_out);
     RUN_TEST(test_frame_faults_are_taken_one_by_one);
     RUN_TEST(test_unplugged_and_power_cycled_slaves_are_gone_and_come_back);
+    RUN_TEST(test_numbers_have_a_point_in_every_locale);
     RUN_TEST(test_status_and_show);
     RUN_TEST(test_answers_never_leave_their_room);
     RUN_TEST(test_random_lines_do_no_harm);
