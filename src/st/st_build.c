@@ -116,6 +116,9 @@ vars_t cm1e_st_vars(parsing_t *parsing, vars_t names, expr_t *address, type_t *t
     }
     if (address && names.first && names.first->next)
         cm1e_st_report(parsing->st, names.first->next->place, "only one variable can be at an address");
+    if (address && parsing->section == V_MEMBER)
+        cm1e_st_report(parsing->st, address->place, "a member of a structure is at no address: a variable that has the "
+                       "structure can be, AT %%MB4");
     return names;
 }
 
@@ -126,6 +129,8 @@ void cm1e_st_edge(parsing_t *parsing, place_t place, const char *word, vars_t va
         cm1e_st_report(parsing->st, place, "\"%s\" cannot stand here; expected \";\" or \":=\"", word);
         return;
     }
+    if (parsing->section == V_MEMBER)
+        cm1e_st_report(parsing->st, place, "%s is for inputs of function blocks and programs, not for members", word);
     for (var_t *var = vars.first; var; var = var->next)
         var->qualifiers |= rising ? Q_R_EDGE : Q_F_EDGE;
 }
@@ -171,7 +176,7 @@ type_t *cm1e_st_unnamed_enum(parsing_t *parsing, place_t place, vars_t enumerato
     type_t *type = cm1e_st_type_node(st, T_ENUM, place, name);
     type->members = enumerators.first;
     type->element = base;
-    type->unnamed = parsing->section != V_GLOBAL;
+    type->unnamed = parsing->section != V_GLOBAL && parsing->section != V_MEMBER;
     type->shown = cm1e_st_format(st->arena, "(%s%s)", enumerators.first->name, enumerators.first->next ? ", ..." : "");
     type->next = st->tree.types;
     st->tree.types = type;
@@ -235,12 +240,22 @@ static void keep_in_instance(st_t *st, unit_t *method, vars_t *vars)
     for (var_t *var = method->vars; var; var = var->next) {
         if (var->section != V_INSTANCE)
             continue;
-        if (method->object.owner->kind == U_INTERFACE)
-            cm1e_st_report(st, var->place, "an interface has no instance variables (VAR_INST): what implements it has");
         var_t *kept = keep(st, method, var, V_LOCAL);
         kept->name = cm1e_st_format(st->arena, "%s.%s", cm1e_st_shown_name(st, method), var->name);
         ST_APPEND(*vars, kept);
     }
+}
+
+/** A method of an interface has its parameters only: what implements it has the rest. */
+static void check_prototype(st_t *st, const unit_t *method)
+{
+    for (const var_t *var = method->vars; var; var = var->next)
+        if (!cm1e_st_is_parameter(var) && var->section != V_RESULT)
+            cm1e_st_report(st, var->place, "a method of an interface has VAR_INPUT, VAR_OUTPUT and VAR_IN_OUT only: "
+                           "other variables are of the method of the block that implements it");
+    if (method->body)
+        cm1e_st_report(st, method->body->place, "a method of an interface has no statements: the method of the block "
+                       "that implements it has");
 }
 
 void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const char *name, type_t *result,
@@ -260,6 +275,8 @@ void cm1e_st_add_unit(parsing_t *parsing, unit_kind_t kind, place_t place, const
         unit->object.methods = parsing->methods;
         for (unit_t *method = parsing->methods; method; method = method->object.next_method) {
             method->object.owner = unit;
+            if (kind == U_INTERFACE)
+                check_prototype(st, method);
             keep_in_instance(st, method, &vars);
         }
         parsing->methods = NULL;

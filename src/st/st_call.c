@@ -77,7 +77,8 @@ static var_t *named_parameter(st_t *st, const unit_t *unit, const arg_t *arg)
     return NULL;
 }
 
-/** By position: inputs and VAR_IN_OUT in the order of their declaration. */
+/** By position: inputs and VAR_IN_OUT in the order of their declaration. What has an initial value may be left out at
+ *  the end. */
 static void match_positions(st_t *st, const unit_t *unit, expr_t *call)
 {
     var_t *var = unit->vars;
@@ -98,7 +99,7 @@ static void match_positions(st_t *st, const unit_t *unit, expr_t *call)
         count++;
     }
     for (; var && cm1e_st_is_function(unit); var = var->next)
-        if (var->section == V_INPUT || var->section == V_IN_OUT) {
+        if ((var->section == V_INPUT && !var->initial) || var->section == V_IN_OUT) {
             cm1e_st_report(st, call->place, "%s needs a value for \"%s\" too", unit->name, var->name);
             return;
         }

@@ -80,8 +80,8 @@ static void name(st_t *st, expr_t *expr)
         cm1e_st_resolve(st, var->owner);
         use_enumerator(expr, var);
     } else if (var) {
-        cm1e_st_report(st, expr->place, "several enumerations have \"%s\": write the type too, TYPE#%s", expr->name,
-                       expr->name);
+        cm1e_st_report(st, expr->place, "several enumerations have \"%s\": write the type too, TYPE#%s. One "
+                       "without a name gets one by TYPE name : (...); END_TYPE", expr->name, expr->name);
         set_wrong(st, expr);
     } else {
         unknown_name(st, expr);

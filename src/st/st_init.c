@@ -89,8 +89,8 @@ void cm1e_st_check_init_args(st_t *st, var_t *var)
         element = element->element;
     if (element != var->type && element->kind == T_BLOCK && cm1e_st_init_takes(element->unit))
         cm1e_st_report(st, var->place,
-                       "FB_Init of %s needs inputs, which the instances of an array cannot be given here",
-                       element->name);
+                       "FB_Init of %s needs inputs, which the elements of an array cannot be given: declare each "
+                       "instance by itself", element->name);
 }
 
 const expr_t *cm1e_st_init_arg(const var_t *instance, const var_t *parameter)

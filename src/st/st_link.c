@@ -76,11 +76,21 @@ static void look_at_struct(const char *name, void *value, void *context)
         cm1e_near_look(context, name);
 }
 
+/** The type that a name means, also by the names of aliases; NULL: there is none. */
+static type_t *named_type(st_t *st, const type_t *type, const char *name)
+{
+    type_t *found = cm1e_st_lookup(st, st->types, type->scope, type->place, name);
+    for (int depth = 0; found && found->same && depth < ST_DEPTH; depth++)
+        found = found->same->kind == T_NONE && !found->same->low
+            ? cm1e_st_lookup(st, st->types, found->same->scope, found->same->place, found->same->name) : found->same;
+    return found;
+}
+
 /** STRUCT EXTENDS: the members of the base stand first. */
 static void extend_struct(st_t *st, type_t *type, int depth)
 {
     const char *name = type->base_name;
-    type_t *base = cm1e_st_lookup(st, st->types, type->scope, type->place, name);
+    type_t *base = named_type(st, type, name);
     type->base_name = NULL;
     if (base && base->state == ST_BUSY) {
         cm1e_st_report(st, type->place, "\"%s\" extends itself", type->name);

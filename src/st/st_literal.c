@@ -214,7 +214,7 @@ static expr_t *time_literal(st_t *st, place_t place, type_kind_t kind, const cha
         return made(st, place, kind, value);
     static const char *const right[] = {
         [T_TIME] = "T#1h30m or T#2.5s, the largest unit first, up to 106751 days", [T_TOD] = "TOD#23:59:59.999",
-        [T_DATE] = "D#2024-02-29, from 1970 to 2262", [T_DT] = "DT#2024-02-29-23:59:59",
+        [T_DATE] = "D#2024-02-29, from 1970 to 2262", [T_DT] = "DT#2024-02-29-23:59:59, from 1970 to 2262",
     };
     cm1e_st_report(st, place, "\"%s\" is not a value of %s; right is for instance %s", whole,
                    st->elementary[kind]->name, right[kind]);

@@ -74,8 +74,8 @@ static void yyerror(const YYLTYPE *place, parsing_t *parsing, const char *text);
 %type <stmts> stmts stmts_of_block case_items body latches
 %type <stmt> stmt
 %type <branches> elsifs
-%type <type> type simple_type result base
-%type <vars> names declarations declaration sections section enumerators members member parts
+%type <type> type array_of simple_type result base
+%type <vars> names declarations declaration sections section enumerators members parts
 %type <var> enumerator
 %type <number> stars text_type qualifiers qualifier modifiers
 %type <args> interface_names
@@ -119,15 +119,12 @@ base: %empty { $$ = NULL; } | NAME { $$ = cm1e_st_type_node(ST, T_NONE, @1, $1);
 enumerators: enumerator { $$ = (vars_t){$1, $1}; } | enumerators ',' enumerator { $$ = $1; ST_APPEND($$, $3); };
 enumerator: NAME { $$ = cm1e_st_var_name(parsing, @1, $1); $$->section = V_ENUMERATOR; }
     | NAME ASSIGN expr { $$ = cm1e_st_var_name(parsing, @1, $1); $$->section = V_ENUMERATOR; $$->initial = $3; };
-members: %empty { $$ = (vars_t){0}; } | members member { $$ = $1; ST_JOIN($$, $2); };
-member: names address ':' type initial ';' {
-        parsing->section = V_MEMBER; parsing->qualifiers = 0;
-        $$ = cm1e_st_vars(parsing, $1, $2, $4, $5); }
-    | error ';' { $$ = (vars_t){0}; };
+members: begin_members declarations { $$ = $2; };
+begin_members: %empty { parsing->section = V_MEMBER; parsing->qualifiers = 0; };
 
 type: simple_type { $$ = $1; }
-    | ARRAY '[' dimensions ']' OF type { $$ = parsing->st->made; parsing->st->made = $$->next; $$->next = NULL;
-                                         $$->element = $6; };
+    | array_of type { $$ = $1; $$->element = $2; };
+array_of: ARRAY '[' dimensions ']' OF { $$ = parsing->st->made; parsing->st->made = $$->next; $$->next = NULL; };
 dimensions: dimension_first | dimensions ',' expr RANGE expr {
         type_t *type = parsing->st->made;
         if (type->dimension_count == ST_DIMENSIONS)
@@ -188,6 +185,10 @@ declaration: names address ':' type initial ';' { $$ = cm1e_st_vars(parsing, $1,
         if (parsing->section != V_IN_OUT || $6 > ST_DIMENSIONS)
             cm1e_st_report(ST, @6, "ARRAY[*] is for VAR_IN_OUT, and has at most %d dimensions", ST_DIMENSIONS);
         $$ = cm1e_st_vars(parsing, $1, $2, type, NULL); }
+    | names address ':' array_of dotted init_of_elements initial ';' {
+        cm1e_st_report(ST, @6, "the elements of an array cannot be given inputs of their FB_Init: declare each instance "
+                       "by itself, as in first : %s(number := 1);", $5);
+        $$ = cm1e_st_vars(parsing, $1, $2, cm1e_st_type_node(ST, T_WRONG, @4, NULL), NULL); }
     | names address ':' type NAME ';' { $$ = cm1e_st_vars(parsing, $1, $2, $4, NULL);
         cm1e_st_edge(parsing, @5, $5, $1); }
     | names address ':' dotted '(' member_inits ')' initial ';' {
@@ -195,6 +196,7 @@ declaration: names address ':' type initial ';' { $$ = cm1e_st_vars(parsing, $1,
         for (var_t *var = $1.first; var; var = var->next)
             var->init_args = $6.first; }
     | error ';' { $$ = (vars_t){0}; };
+init_of_elements: '(' member_inits ')' | '[' element_inits ']';
 stars: '*' { $$ = 1; } | stars ',' '*' { $$ = $1 + 1; };
 names: NAME { var_t *var = cm1e_st_var_name(parsing, @1, $1); $$ = (vars_t){var, var}; }
     | names ',' NAME { var_t *var = cm1e_st_var_name(parsing, @3, $3); $$ = $1; ST_APPEND($$, var); };

@@ -162,6 +162,24 @@ FUNCTION_BLOCK FB_B EXTENDS FB_A VAR_STAT k : (Idle2, Run2) := Run2; END_VAR SUP
 PROGRAM Main VAR a, b : FB_A; c : FB_B; o : Other := Idle; RETAIN1 : INT; END_VAR VAR RETAIN kept : (Off, On); END_VAR
   a(); a(); b(); c(); kept := On; IF gMode = Fast THEN gMode := Slow; END_IF END_PROGRAM
 """, 1, {"Main.a.n": 9, "Main.a.state": 7, "Main.b.n": 2, "Main.c.n": 102, "Main.o": 9, "Main.kept": 1, "gMode": 0}),
+    # An alias is the structure itself; a member may be an enumeration without a name, or an instance with its FB_Init.
+    ("members", """
+NAMESPACE N TYPE Base : STRUCT y, z : INT := 8; END_STRUCT; Far : Base; END_TYPE END_NAMESPACE
+TYPE Near : N.Far; ST_A EXTENDS Near : STRUCT mode : (Idle, Run) := Run; f : FB_A(k := 3); g, h : FB_A(k := 5) := (q := 7); END_STRUCT;
+  T_A : ST_A; ST_B EXTENDS T_A : STRUCT x : INT := 4; END_STRUCT; END_TYPE
+FUNCTION_BLOCK FB_A VAR_INPUT q : INT; END_VAR VAR_OUTPUT n : INT; END_VAR
+  METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; k : INT; END_VAR n := n + k; END_METHOD END_FUNCTION_BLOCK
+PROGRAM Main VAR a : ST_B; b : ST_B := (z := 2, mode := Idle); n : INT; END_VAR
+  n := a.y + b.z; IF a.mode = Run AND b.mode = Idle THEN b.mode := a.mode; END_IF END_PROGRAM
+""", 1, {"Main.n": 10, "Main.b.mode": 1, "Main.a.f.n": 3, "Main.a.g.n": 5, "Main.a.h.q": 7, "Main.b.x": 4}),
+    # Inputs with an initial value may be left out at the end.
+    ("left_out", """
+FUNCTION F : INT VAR_INPUT a : INT := 3; b : INT := 4; END_VAR F := a * 10 + b; END_FUNCTION
+FUNCTION H : INT VAR_IN_OUT q : INT; END_VAR VAR_INPUT s : STRING := 'abcd'; END_VAR q := q + 1; H := LEN(s); END_FUNCTION
+INTERFACE I METHOD M : INT VAR_INPUT a : INT := 6; END_VAR END_METHOD END_INTERFACE
+FUNCTION_BLOCK B IMPLEMENTS I METHOD M : INT VAR_INPUT a : INT := 6; END_VAR M := a; END_METHOD END_FUNCTION_BLOCK
+PROGRAM Main VAR a, b, c, d, e, q : INT; fb : B; i : I := fb; END_VAR a := F(); b := F(1); c := H(q); d := fb.M() + F(); e := i.M(); F(); END_PROGRAM
+""", 1, {"Main.a": 34, "Main.b": 14, "Main.c": 4, "Main.q": 1, "Main.d": 40, "Main.e": 6}),
     ("open_texts", """
 FUNCTION G : INT VAR_IN_OUT a : ARRAY[*] OF STRING(5); END_VAR a[1] := 'abcdefg'; G := LEN(a[2]); END_FUNCTION
 PROGRAM Main VAR x : ARRAY[1..3] OF STRING(5) := [3('ab')]; n : INT; END_VAR n := G(a := x); END_PROGRAM

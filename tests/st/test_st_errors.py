@@ -57,6 +57,8 @@ STATEMENTS = [
     ("IF b THEN i := 1; ELSEIF (i > 1) THEN i := 2; END_IF", "9:34", ["ELSIF"]),
     ("IF b THEN i := 1; ELSEIF b THEN i := 2; END_IF", "9:26", ["ELSIF"]),
     ("j := 1;", "9:1", ["no variable", '"j"']),
+    ("DT_TO_DATE(DT#1969-12-31-23:59:59);", "9:12", ["from 1970 to 2262"]),
+    ("i := Twice();", "9:6", ['Twice needs a value for "v" too']),
     ("ii := 1;", "9:1", ['did you mean "i"']),
     ("i := 1.5;", "9:6", ["INT"]),
     ("i := 40000;", "9:6", ["40000", "INT"]),
@@ -284,6 +286,12 @@ SOURCES = [
      "USING A, B; PROGRAM P VAR n : INT; END_VAR n := F(); END_PROGRAM", "1:161", ["in A and in B"]),
     ("FUNCTION_BLOCK A METHOD FB_Init VAR_INPUT bInitRetains, bInCopyCode : BOOL; n : INT; END_VAR END_METHOD "
      "END_FUNCTION_BLOCK PROGRAM P VAR a : A; END_VAR END_PROGRAM", "1:138", ["FB_Init of A needs \"n\""]),
+    ("FUNCTION_BLOCK A METHOD FB_Init VAR_INPUT n : INT; END_VAR END_METHOD END_FUNCTION_BLOCK PROGRAM P VAR a : ARRAY[1..2] OF A; "
+     "END_VAR END_PROGRAM", "1:104", ["declare each instance by itself"]),
+    ("FUNCTION_BLOCK A METHOD FB_Init VAR_INPUT n : INT; END_VAR END_METHOD END_FUNCTION_BLOCK PROGRAM P VAR a : ARRAY[1..2] OF "
+     "A[(n := 1), (n := 2)]; END_VAR END_PROGRAM", "1:124", ["declare each instance by itself"]),
+    ("FUNCTION_BLOCK A METHOD FB_Init VAR_INPUT n : INT; END_VAR END_METHOD END_FUNCTION_BLOCK PROGRAM P VAR a : ARRAY[1..2] OF "
+     "A(n := 1) := [2((n := 2))]; END_VAR END_PROGRAM", "1:124", ["declare each instance by itself"]),
     ("FUNCTION_BLOCK A END_FUNCTION_BLOCK PROGRAM P VAR a : A(n := 1); END_VAR END_PROGRAM", "1:57", ["no FB_Init"]),
     ("PROGRAM P VAR a : ARRAY[1..2] OF INT := [1, 2, 3]; END_VAR END_PROGRAM", "1:48", ["2 elements"]),
     ("TYPE E : (Off, Gate); END_TYPE PROGRAM P VAR gate : AXIS_REF; s : E; b : BOOL; END_VAR b := s = Gate; END_PROGRAM", "1:95",
@@ -342,10 +350,20 @@ SOURCES = [
     ("FUNCTION_BLOCK B METHOD M : INT VAR_STAT x : INT; END_VAR x := 3; M := x; END_METHOD END_FUNCTION_BLOCK "
      "PROGRAM P VAR f : B; n : INT; END_VAR n := f.M() + n; END_PROGRAM", "1:148", ["can change variables"]),
     ("FUNCTION_BLOCK B VAR_STAT x : INT; END_VAR END_FUNCTION_BLOCK PROGRAM P VAR n : INT; END_VAR n := B.x; END_PROGRAM", "1:101", ['"B" is a type, and no enumeration']),
-    ("INTERFACE I METHOD M VAR_INST a : INT; END_VAR END_METHOD END_INTERFACE", "1:31", ["no instance variables"]),
+    ("INTERFACE I METHOD M VAR_INST a : INT; END_VAR END_METHOD END_INTERFACE", "1:31", ["VAR_INPUT, VAR_OUTPUT and VAR_IN_OUT only"]),
+    ("INTERFACE I METHOD M VAR_STAT a : INT; END_VAR END_METHOD END_INTERFACE", "1:31", ["VAR_INPUT, VAR_OUTPUT and VAR_IN_OUT only"]),
+    ("INTERFACE I METHOD M VAR a : INT; END_VAR END_METHOD END_INTERFACE", "1:26", ["VAR_INPUT, VAR_OUTPUT and VAR_IN_OUT only"]),
+    ("INTERFACE I METHOD M : INT M := 1; END_METHOD END_INTERFACE", "1:28", ["has no statements"]),
+    ("INTERFACE I PROPERTY M : INT GET M := 1; END_GET END_PROPERTY END_INTERFACE", "1:34", ["has no statements"]),
     ("FUNCTION_BLOCK B METHOD M VAR_INPUT i : INT; END_VAR VAR_INST a : INT := i; END_VAR END_METHOD END_FUNCTION_BLOCK", "1:74", ['"i"']),
     ("FUNCTION F VAR_INPUT a : ARRAY[*] OF INT; END_VAR END_FUNCTION", "1:32", ["VAR_IN_OUT"]),
     ("TYPE T : ARRAY[*] OF INT; END_TYPE", "1:16", ["VAR_IN_OUT"]),
+    ("TYPE T : STRUCT a : ARRAY[*] OF INT; END_STRUCT; END_TYPE", "1:27", ["VAR_IN_OUT"]),
+    ("TYPE T : STRUCT a : BOOL R_EDGE; END_STRUCT; END_TYPE", "1:26", ["not for members"]),
+    ("TYPE T : STRUCT a AT %IX1.0.1 : BOOL; END_STRUCT; END_TYPE", "1:22", ["at no address"]),
+    ("TYPE T : UNION a : (Off, On); END_UNION; END_TYPE", "1:16", ["not all bits are a value"]),
+    ("TYPE A : STRUCT m : (Off, On); END_STRUCT; B : STRUCT m : (On, Off); END_STRUCT; END_TYPE PROGRAM P VAR a : A; END_VAR "
+     "a.m := On; END_PROGRAM", "1:127", ["several enumerations", "One without a name gets one by TYPE"]),
     ("FUNCTION F VAR_IN_OUT a : ARRAY[*] OF INT; b : ARRAY[*] OF INT; END_VAR a := b; END_FUNCTION", "1:73", ["element by element"]),
     ("FUNCTION F VAR_IN_OUT a : ARRAY[*] OF INT; END_VAR VAR r : ARRAY[1..2] OF INT; END_VAR r := a; END_FUNCTION", "1:93", ["ARRAY [*] OF INT"]),
     ("FUNCTION F VAR_IN_OUT a : ARRAY[*] OF INT; END_VAR END_FUNCTION PROGRAM Main VAR x : ARRAY[1..3] OF DINT; END_VAR F(x); END_PROGRAM", "1:117", ["ARRAY [*] OF INT and needs"]),
@@ -368,6 +386,9 @@ SOURCES = [
     ("TYPE A EXTENDS B : STRUCT x : INT; END_STRUCT; B EXTENDS A : STRUCT y : INT; END_STRUCT; END_TYPE", "1:", ["extends itself"]),
     ("TYPE A EXTENDS A : STRUCT x : INT; END_STRUCT; END_TYPE", "1:6", ["no structure"]),
     ("TYPE A EXTENDS B : STRUCT x : INT; END_STRUCT; B : STRUCT X : INT; END_STRUCT; END_TYPE", "1:27", ['A has "x" already']),
+    ("TYPE A EXTENDS B : STRUCT x : INT; END_STRUCT; B : C; C : B; END_TYPE", "1:6", ["no structure"]),
+    ("TYPE A EXTENDS B : STRUCT x : INT; END_STRUCT; B : A; END_TYPE", "1:6", ["no structure"]),
+    ("TYPE A EXTENDS B : STRUCT x : INT; END_STRUCT; B : ARRAY[1..2] OF INT; END_TYPE", "1:6", ["no structure"]),
     ("TYPE A EXTENDS INT : STRUCT x : INT; END_STRUCT; END_TYPE", "1:6", ["no structure"]),
     ("TYPE A EXTENDS B : STRUCT x : INT; END_STRUCT; B : UNION y : INT; END_UNION; END_TYPE", "1:6", ["no structure"]),
     ("TYPE A EXTENDS AXIS_REF : STRUCT x : INT; END_STRUCT; END_TYPE", "1:6", ["no structure"]),
