@@ -3,6 +3,7 @@
 #include <signal.h>
 #include <stdatomic.h>
 #include <stdbool.h>
+#include <time.h>
 
 /** Signals that end or suspend a program by default, from outside or because of its own write. During a motion each of
  *  them would leave the motor without a ramp. Not in the list: SIGKILL and SIGSTOP, which cannot be caught, signals of
@@ -21,17 +22,20 @@ static const struct {
 enum { SIGNALS = sizeof signals / sizeof signals[0] };
 
 static _Atomic(cm1e_scheduler_t *) attached;
+static atomic_int handlers; /**< that are running: in any thread, while another one may destroy the scheduler */
 static struct sigaction before[SIGNALS];
 static bool taken[SIGNALS];
 
-/** Async-signal-safe: two lock-free atomic accesses. A second signal changes nothing, because the run is ending already
- *  and the ramp is bounded. */
+/** Async-signal-safe: lock-free atomic accesses. A second signal changes nothing, because the run is ending already and
+ *  the ramp is bounded. */
 static void on_signal(int number)
 {
     (void)number;
+    atomic_fetch_add(&handlers, 1);
     cm1e_scheduler_t *scheduler = atomic_load(&attached);
     if (scheduler)
         cm1e_scheduler_stop(scheduler);
+    atomic_fetch_sub(&handlers, 1);
 }
 
 void cm1e_signals_attach(cm1e_scheduler_t *scheduler)
@@ -56,4 +60,6 @@ void cm1e_signals_detach(const cm1e_scheduler_t *scheduler)
         if (taken[i])
             sigaction(signals[i].number, &before[i], NULL);
     atomic_store(&attached, NULL);
+    while (atomic_load(&handlers) > 0) /* one that began before has the scheduler; its thread may need our processor */
+        nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
 }

@@ -211,6 +211,53 @@ START_TEST(test_a_pipe_that_breaks_in_the_cycle_stops_in_order)
 }
 END_TEST
 
+/* ---- a handler that is late --------------------------------------------------------------------------------------- */
+
+static atomic_bool is_slow, has_begun, has_ended;
+
+void __real_cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);
+void __wrap_cm1e_scheduler_stop(cm1e_scheduler_t *scheduler);
+
+void __wrap_cm1e_scheduler_stop(cm1e_scheduler_t *scheduler)
+{
+    if (atomic_load(&is_slow)) {
+        atomic_store(&has_begun, true);
+        sleep_ms(100); /* its thread does not get a processor */
+    }
+    __real_cm1e_scheduler_stop(scheduler);
+    atomic_store(&has_ended, true);
+}
+
+static void *be_signalled(void *context)
+{
+    (void)context;
+    pthread_kill(pthread_self(), SIGTERM);
+    return NULL;
+}
+
+START_TEST(test_a_scheduler_lives_until_the_handler_of_another_thread_has_ended)
+{
+    cm1e_bus_config_t config;
+    cm1e_bus_t *bus;
+    cm1e_scheduler_t *scheduler;
+    pthread_t thread;
+    cm1e_bus_config_init(&config, "sim", 1);
+    ck_assert_int_eq(cm1e_bus_open(&bus, &config, NULL), CM1E_OK);
+    ck_assert_int_eq(cm1e_bus_start(bus, NULL), CM1E_OK);
+    ck_assert_int_eq(cm1e_scheduler_create(&scheduler, bus, NULL, NULL), CM1E_OK);
+    cm1e_scheduler_stop_on_signals(scheduler);
+    atomic_store(&is_slow, true);
+    ck_assert_int_eq(pthread_create(&thread, NULL, be_signalled, NULL), 0);
+    while (!atomic_load(&has_begun))
+        sleep_ms(1);
+    cm1e_scheduler_destroy(scheduler);
+    ck_assert(atomic_load(&has_ended));
+    pthread_join(thread, NULL);
+    cm1e_bus_close(bus);
+    cm1e_bus_config_free(&config);
+}
+END_TEST
+
 /** The signals in PARTS parts. */
 static Suite *make_suite(int part)
 {
@@ -220,8 +267,10 @@ static Suite *make_suite(int part)
     tcase_set_timeout(all, 60);
     tcase_add_loop_test(all, test_every_signal_ramps_down_and_more_of_them_change_nothing, first, end);
     tcase_add_loop_test(all, test_an_ignored_signal_stays_ignored_but_for_those_that_ask_for_an_end, first, end);
-    if (part == 0)
+    if (part == 0) {
         tcase_add_test(all, test_a_pipe_that_breaks_in_the_cycle_stops_in_order);
+        tcase_add_test(all, test_a_scheduler_lives_until_the_handler_of_another_thread_has_ended);
+    }
     suite_add_tcase(suite, all);
     return suite;
 }
