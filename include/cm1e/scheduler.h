@@ -44,7 +44,8 @@ typedef struct cm1e_task_config {
 
 /** Configuration of a scheduler. A zero in any field selects the default. */
 typedef struct cm1e_scheduler_config {
-    int realtime_priority;      /**< SCHED_FIFO priority 1 ... 98; 0 selects 80; -1: no real time */
+    int realtime_priority;      /**< SCHED_FIFO priority 1 ... 98; 0 selects 80; -1: no real time. The memory of the
+                                     process stays locked after the run (docs/REALTIME.md) */
     int cpu;                    /**< CPU to which the thread is bound (1 = first); 0: any */
     bool realtime_required;     /**< true: a missing privilege is an error; false: `advice` in the statistics */
     int64_t stop_timeout_ns;    /**< maximum time of the ramp-down at the end; 0 selects 10 s. Behind its ramp a motor

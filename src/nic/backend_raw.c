@@ -1,6 +1,7 @@
 /* Network interfaces: for each port the way that its name states. Waits end exactly at the deadline. */
 #include <errno.h>
 #include <poll.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/prctl.h>
@@ -33,6 +34,8 @@ typedef struct way {
 typedef struct raw {
     end_t ends[CM1E_NIC_PORTS];
     struct pollfd fds[CM1E_NIC_PORTS];
+    pthread_t opener;       /**< the thread whose timer slack was changed ... */
+    unsigned long slack_ns; /**< ... from this; 0: it was not */
 } raw_t;
 
 /* ---- the ways ---------------------------------------------------------------------------------------------------- */
@@ -90,6 +93,8 @@ static void raw_close(cm1e_nic_link_t *link)
     for (int i = 0; i < link->ports; i++)
         if (raw->ends[i].way)
             raw->ends[i].way->close(&raw->ends[i]);
+    if (raw->slack_ns > 0 && pthread_equal(raw->opener, pthread_self()))
+        prctl(PR_SET_TIMERSLACK, raw->slack_ns, 0UL, 0UL, 0UL);
     free(raw);
 }
 
@@ -115,6 +120,16 @@ static cm1e_error_t open_end(end_t *end, struct pollfd *fd, const char *name, cm
     return error;
 }
 
+/** A thread without real-time priority is woken up to 50 us late by default; this is the thread that waits. Of several
+ *  interfaces the first one restores it. */
+static void wake_in_time(raw_t *raw)
+{
+    const int slack_ns = prctl(PR_GET_TIMERSLACK, 0UL, 0UL, 0UL, 0UL);
+    raw->opener = pthread_self();
+    raw->slack_ns = slack_ns > 1 ? (unsigned long)slack_ns : 0;
+    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+}
+
 static cm1e_error_t raw_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
 {
     raw_t *raw = calloc(1, sizeof *raw);
@@ -136,8 +151,7 @@ static cm1e_error_t raw_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *con
         }
     }
     link->identity = make_identity();
-    /* A thread without real-time priority is woken up to 50 us late by default; this is the thread that waits. */
-    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+    wake_in_time(raw);
     return CM1E_OK;
 }
 

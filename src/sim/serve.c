@@ -62,12 +62,13 @@ typedef cm1e_sim_server_t server_t;
 typedef struct scheduling {
     int policy;
     struct sched_param parameters;
+    int slack_ns;
     bool locked;
 } scheduling_t;
 
 static scheduling_t ask_for_realtime(void)
 {
-    scheduling_t before = {.policy = sched_getscheduler(0)};
+    scheduling_t before = {.policy = sched_getscheduler(0), .slack_ns = prctl(PR_GET_TIMERSLACK)};
     sched_getparam(0, &before.parameters);
     const struct sched_param realtime = {.sched_priority = PRIORITY};
     sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &realtime);
@@ -82,6 +83,8 @@ static void restore(const scheduling_t *before)
     if (before->locked)
         munlockall();
     sched_setscheduler(0, before->policy, &before->parameters);
+    if (before->slack_ns > 0)
+        prctl(PR_SET_TIMERSLACK, (unsigned long)before->slack_ns, 0UL, 0UL, 0UL);
 }
 
 /* ---- console ----------------------------------------------------------------------------------------------------- */

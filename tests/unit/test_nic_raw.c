@@ -4,6 +4,7 @@
 #include <stdatomic.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <time.h>
@@ -256,6 +257,31 @@ static void test_two_interfaces_make_a_ring(void)
     TEST_ASSERT_NULL(nic);
 }
 
+/* ---- the thread that opens ---------------------------------------------------------------------------------------- */
+
+/** In either order of the closing. */
+static void test_the_timer_slack_of_the_thread_comes_back(void)
+{
+    need_wire();
+    char second[16];
+    run_above_others(false); /* a real-time thread has no timer slack */
+    prctl(PR_SET_TIMERSLACK, 40000UL, 0UL, 0UL, 0UL);
+    snprintf(second, sizeof second, "wire1%s", way);
+    for (int turn = 0; turn < 2; turn++) {
+        cm1e_nic_t *nics[2] = {NULL, NULL};
+        setUp();
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_nic_open(&nics[0], &config, &diag));
+        strcpy(config.interface_name, second);
+        TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_nic_open(&nics[1], &config, &diag));
+        TEST_ASSERT_EQUAL_INT(1, prctl(PR_GET_TIMERSLACK));
+        cm1e_nic_close(nics[turn]);
+        cm1e_nic_close(nics[1 - turn]);
+        TEST_ASSERT_EQUAL_INT(40000, prctl(PR_GET_TIMERSLACK));
+    }
+    prctl(PR_SET_TIMERSLACK, 0UL, 0UL, 0UL, 0UL); /* that of the process */
+    run_above_others(true);
+}
+
 /* ---- what it says ------------------------------------------------------------------------------------------------ */
 
 static void expect_failure(const char *interface_name, cm1e_error_t error, const char *a, const char *b)
@@ -337,6 +363,7 @@ static void run_way(const char *stated)
     RUN_TEST(test_a_lost_frame_costs_the_timeout);
     RUN_TEST(test_an_interface_that_goes_away_is_no_busy_loop);
     RUN_TEST(test_two_interfaces_make_a_ring);
+    RUN_TEST(test_the_timer_slack_of_the_thread_comes_back);
     way = "";
 }
 
