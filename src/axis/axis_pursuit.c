@@ -316,7 +316,8 @@ static void hold_near_rest(cm1e_axis_t *axis)
     if (axis->silence.silent > 0 || axis->silence.resumed) /* it is not heard, or what it has shown is older */
         return;
     const double speed = speed_of_motor(axis), lost = (pursuit->speed - speed) * axis->cycle_s / pursuit->unheard_s;
-    const bool goes_on = axis_acts(axis) && !set_points_move(axis) && pursuit->unheard_s < longest_hold_s;
+    /* Else the torque goes in this cycle, and the target stays. */
+    const bool goes_on = axis_acts(axis) && axis_holds(axis) && pursuit->unheard_s < longest_hold_s;
     if (goes_on && !pursuit->under_way && fabs(speed) > delay_cycles * lost)
         return;
     pursuit->under_way |= is_too_far(axis);
