@@ -187,25 +187,28 @@ bool cm1e_axis_pursuit_begin(cm1e_axis_t *axis)
     return axis_has_extra(axis, EXTRA_PURSUIT) && shows_velocity(axis) && begin(axis);
 }
 
-/* u/s, in the direction of the motion before; never more than in the cycle before. */
+/* A homing does not know its software limits. `velocity`: u/s. */
+static bool runs_into_limit(const cm1e_axis_t *axis, double velocity)
+{
+    const cm1e_motion_state_t now = {0.0, velocity, 0.0};
+    return axis->state != CM1E_AXIS_HOMING &&
+           !cm1e_axis_limits_can_stop(axis, cm1e_axis_line(axis, axis->setpoint.position), now);
+}
+
+/* u/s, in the direction of the motion before; never more than in the cycle before. Where the set-point could no longer
+ * stop before a software limit, it brakes on its way to the motor: it would run away from one that the drive has slowed
+ * down. */
 static double speed_of_pursuit(const cm1e_axis_t *axis)
 {
     const double before = axis->setpoint.pursuit.cycles > 0 ? axis->setpoint.velocity : axis->setpoint.pursuit.velocity;
-    return fmax(0.0, fmin(speed_of_motor(axis) + lead_of_motor(axis) / approach_s, fabs(before)));
-}
-
-/* A homing does not know its software limits. */
-static bool runs_into_limit(const cm1e_axis_t *axis)
-{
-    const cm1e_motion_state_t now = {0.0, axis->setpoint.velocity, 0.0};
-    return axis->state != CM1E_AXIS_HOMING &&
-           !cm1e_axis_limits_can_stop(axis, cm1e_axis_line(axis, axis->setpoint.position), now);
+    const double brakes = runs_into_limit(axis, before) ? axis->limits.emergency.deceleration * axis->cycle_s : 0.0;
+    return fmax(0.0, fmin(speed_of_motor(axis) + lead_of_motor(axis) / approach_s, fabs(before) - brakes));
 }
 
 static bool is_over(const cm1e_axis_t *axis, double speed)
 {
     return speed == 0.0 || lead_of_motor(axis) <= near * way_of_cycle(axis) ||
-           axis->setpoint.pursuit.cycles * axis->cycle_s > longest_s || runs_into_limit(axis);
+           axis->setpoint.pursuit.cycles * axis->cycle_s > longest_s;
 }
 
 /* Called when the velocity has changed by a step, and before the set-point of the cycle is made. */
