@@ -279,12 +279,11 @@ static bool brakes_first(cm1e_axis_t *axis, double counts_per_s)
     return true;
 }
 
-/* Lets the set-point stand where the motor is. It is to rest too, so long at least. */
-static void hold_motor(cm1e_axis_t *axis, int64_t time_ns)
+/* Lets the set-point stand where the motor is. */
+static void hold_motor(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);
     cm1e_axis_hold_here(axis);
-    axis->power.brake_until_ns = axis->now_ns + time_ns;
 }
 
 /* Takes over the enabled drive (note 5). Its set-point is where the motor was braked, or begins at the actual position
@@ -337,6 +336,21 @@ static bool paused(const cm1e_axis_t *axis) { return axis->silence.resumed == RE
 static bool shows_motor(const cm1e_axis_t *axis)
 {
     return axis->drive.feedback.fresh && !axis->silence.frozen && !paused(axis);
+}
+
+/* Whether it has shown that the motor rests. */
+static bool shows_rest(const cm1e_axis_t *axis)
+{
+    return shows_motor(axis) && axis->drive.actual.contradictions == 0 && !is_fast(axis);
+}
+
+/* The motor may turn while the axis is not on yet: it is to rest for a moment then. Where its servo turns it round, it
+ * is slow too, and friction may hold it there for some cycles. A pause is longer than it seems in its first cycle,
+ * which has the time of its inputs: the cycle after it counts too. */
+static void note_coasting(cm1e_axis_t *axis)
+{
+    if (axis->drive.actual.seen && (axis->power.undecided > 0 || !shows_rest(axis)))
+        axis->power.brake_until_ns = axis->now_ns + brake_ns;
 }
 
 /* Whether a motor that is caught has turned round, far from the set-point: it was too fast for its ramp, or its load is
@@ -407,18 +421,16 @@ static bool ramp_is_over(cm1e_axis_t *axis)
 
 /* The motor has just got its torque. If it turns, the set-point goes with it and brakes, or stands if that cannot be.
  * Its velocity is known when two cycles in a row have shown it under torque, by numbers that agree. Behind a pause or a
- * silence the drive has braked it already, and a target that went to it now would drive it. A motor that is slow then,
- * or was fast in the cycle before, may be one that its servo just turns round. */
+ * silence the drive has braked it already, and a target that went to it now would drive it. */
 static void brake_or_hold(cm1e_axis_t *axis)
 {
     power_t *power = &axis->power;
-    const bool known = shows_motor(axis) && axis->drive.actual.contradictions == 0;
-    const bool rests = known && !is_fast(axis);
+    const bool rests = shows_rest(axis), known = shows_motor(axis) && axis->drive.actual.contradictions == 0;
     const bool unheard = paused(axis) || axis->silence.silent_before > CM1E_AXIS_RIDDEN_OUT_CYCLES;
     const bool never = unheard || cm1e_drive_contradicts_itself(&axis->drive) ||
                        power->undecided >= longest_undecided;
     if (rests || (known && power->velocity != 0.0f) ? !brakes_first(axis, coasting_velocity(axis)) : never)
-        hold_motor(axis, rests && power->undecided == 0 ? 0 : brake_ns);
+        hold_motor(axis);
     power->undecided++;
 }
 
@@ -471,6 +483,8 @@ void cm1e_axis_power_step(cm1e_axis_t *axis)
     const bool enables = axis->state == CM1E_AXIS_DISABLED && wanted && acting && (free || holds);
     if (!holds || (wanted && axis->power.energized))
         axis->power.held = false;
+    if (free)
+        note_coasting(axis);
     if (enables)
         take_over_or_brake(axis);
     else if (leaves && ramp_is_over(axis))
