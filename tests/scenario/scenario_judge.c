@@ -262,13 +262,15 @@ static bool at_stop(const machine_axis_t *axis)
     return axis->spec->stops != 0 && fabs(axis->probe.position_counts) > STOP_COUNTS;
 }
 
-/** A motor that turns when it gets its torque is braked from its velocity, while its axis is Disabled still. */
+/** A motor that turns when it gets its torque is braked from its velocity, while its axis is Disabled still. Where an error
+ *  comes in the same cycle, it has the torque for that ramp as for any ramp of ErrorStop (docs/SAFETY.md). */
 static bool is_braked_first(const machine_axis_t *axis, double velocity)
 {
     const double sign = axis->spec->invert != 0 ? -1 : 1, shaft = sign * axis->probe.velocity_counts_per_s;
     const double before = axis->seen.speeds[0]; /* what the drive has shown is a cycle older, and it may brake already */
-    return is_motor(axis) && axis->info.state == CM1E_AXIS_DISABLED && axis->seen.set_velocity == 0 &&
-           velocity * shaft > 0 && fabs(velocity) < 1.02 * fmax(fabs(shaft), before) + SERVO_SPEED_COUNTS;
+    const bool disabled = axis->info.state == CM1E_AXIS_DISABLED || axis->seen.fails_off;
+    return is_motor(axis) && disabled && axis->seen.set_velocity == 0 && velocity * shaft > 0 &&
+           fabs(velocity) < 1.02 * fmax(fabs(shaft), before) + SERVO_SPEED_COUNTS;
 }
 
 /** The set-point itself knows no tolerance but that of its numbers. */
@@ -469,6 +471,7 @@ static void judge_state(run_t *run, machine_axis_t *axis)
     };
     const cm1e_axis_state_t before = axis->seen.state, now = axis->info.state;
     axis->seen.state = now;
+    axis->seen.fails_off = before == CM1E_AXIS_DISABLED && now == CM1E_AXIS_ERROR_STOP;
     if (before == now)
         return;
     if (!(to[before] >> now & 1))

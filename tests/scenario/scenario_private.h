@@ -74,6 +74,7 @@ typedef struct witness {
     unsigned excused;                     /**< rules of the bridge's guide that may be broken by now */
     int homing;                           /**< cycles since its drive homed */
     int error_at;                         /**< cycle in which it came into ErrorStop */
+    bool fails_off;                       /**< it does in this cycle, from Disabled */
     cm1e_axis_state_t logged;             /**< last state that the log told, */
     bool told;                            /**< and an error since */
     int off_cycles;                       /**< without MC_Power.Enable, or in ErrorStop, and still under torque */
