@@ -624,7 +624,7 @@ static void judge_load(run_t *run, machine_axis_t *axis)
     const bool closed = gap <= 0 || gap >= spec->backlash;
     const double lag = 4 * run->scenario->cycle_us * 1e-6 * crossing_speed(spec) + 2.5 * slack_of(spec);
     const double off = spec->start + seen->load - axis->info.actual_position * spec->counts_per_unit;
-    if (spec->backlash > 0 && closed && seen->kept && !seen->unseen && !seen->shifted && at_rest(axis) && axis->info.in_position &&
+    if (spec->backlash > 0 && closed && seen->kept && !seen->unseen && !seen->cut && !seen->shifted && at_rest(axis) && axis->info.in_position &&
         axis->probe.torque_on && !is_pushed(run, axis) && !was_disturbed(run, seen) &&
         fabs(apart(spec, off)) > LOAD_COUNTS + lag)
         scenario_fail(run, "load", "%s (%s): its load is %.1f counts from where the axis shows it", axis->name,
@@ -669,7 +669,7 @@ static void judge_test(run_t *run, machine_axis_t *axis)
     const double by = axis->seen.load - axis->test_from;
     /* A load stays where the servo has pushed it on its way into position. Where a motor was without power, or turned while
      * nobody saw it, its place in the gap is unknown. */
-    const bool known = axis->seen.kept && !axis->seen.unseen;
+    const bool known = axis->seen.kept && !axis->seen.unseen && !axis->seen.cut;
     const double geared = axis->spec->backlash > 0 ? LOAD_COUNTS : 0;
     const double most = STILL_COUNTS + slack_of(axis->spec) + (by_velocity(axis->spec) ? COARSE_STILL_COUNTS : 0) + geared;
     if (is_motor(axis) && fabs(by - axis->test_by) > most + (known ? 0 : axis->spec->backlash))

@@ -48,6 +48,8 @@ typedef struct witness {
     double rest_at;                       /**< counts; where it came to rest */
     double load;                          /**< counts in the direction of its axis: what its gear moves */
     bool unseen;                          /**< that moved while nobody saw it */
+    bool cut;                             /**< a crossing of the gap, by MC_Power, and the torque has not gone since */
+    int heading, turned_at;               /**< its set velocity has this sign under torque, since this cycle */
     bool pressed[SWITCHES];               /**< its limit switches at a terminal */
     int rest_cycles;                      /**< since it is to be at rest, and is */
     bool torque_on;                       /**< in the cycle before */
