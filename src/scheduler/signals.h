@@ -9,7 +9,7 @@
 
 /** Attaches a scheduler, in place of the one attached before. */
 void cm1e_signals_attach(cm1e_scheduler_t *scheduler);
-/** Restores the earlier action of the signals, if this scheduler is attached. Behind it no handler knows it any more. */
+/** Restores the earlier action of the signals, if this scheduler is attached. Behind it no handler knows it. */
 void cm1e_signals_detach(const cm1e_scheduler_t *scheduler);
 
 #endif
