@@ -357,6 +357,10 @@ void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_n
 /** For so long no frame was sent that a drive with a watchdog has taken its torque off by itself. So does one without:
  *  ErrorStop, if the axis has torque or is about to get it. Called after cm1e_axis_after_pause(). @rt cycle */
 void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns);
+/** For so long every cycle was late. In none of them a set-point moves, so no motion, and no ramp either, would ever
+ *  end: ErrorStop, as above, and the torque goes at once, also in the ramp of an error before. Called after
+ *  cm1e_axis_after_pause() or cm1e_axis_hold_cycle(). @rt cycle */
+void cm1e_axis_ran_late(cm1e_axis_t *axis, int64_t late_ns);
 /** Ends the axis in order: it ramps down, then the drive is disabled. true when the drive is disabled, or gone. Call it
  *  in every cycle instead of the programs. @rt cycle */
 bool cm1e_axis_shut_down(cm1e_axis_t *axis);

@@ -129,14 +129,18 @@ static void note_silence(cm1e_axis_t *axis, int64_t cycles)
     axis->silence.shaken = add_up(axis->silence.shaken, cycles * CM1E_SHAKEN_BY_SILENCE);
 }
 
+/* Whether a cycle without an answer, or a late one, does not keep the set-point: a velocity may be reduced in any. */
+static bool brakes_on(const cm1e_axis_t *axis)
+{
+    return axis->mode == CM1E_MODE_CSV && axis->state == CM1E_AXIS_ERROR_STOP;
+}
+
 void cm1e_axis_note_answer(cm1e_axis_t *axis, bool answered, bool lost)
 {
     axis->silence.resumed = RESUMED_FROM_NOTHING;
     axis->silence.began_anew = false;
     axis->silence.silent_before = answered ? axis->silence.silent : 0;
-    /* A velocity may be reduced all the same: a ramp of ErrorStop goes on. */
-    const bool brakes_on = axis->mode == CM1E_MODE_CSV && axis->state == CM1E_AXIS_ERROR_STOP;
-    axis->silence.frozen = !answered && !lost && !brakes_on;
+    axis->silence.frozen = !answered && !lost && !brakes_on(axis);
     if (answered) {
         axis->silence.silent = 0;
         if (axis->silence.shaken > 0)
@@ -149,7 +153,7 @@ void cm1e_axis_note_answer(cm1e_axis_t *axis, bool answered, bool lost)
 void cm1e_axis_hold_cycle(cm1e_axis_t *axis, int64_t missed)
 {
     note_silence(axis, missed);
-    axis->silence.frozen = true;
+    axis->silence.frozen = !brakes_on(axis);
     cm1e_axis_note_disturbed(axis);
     cm1e_drive_note_late(&axis->drive);
     cm1e_drive_slew(&axis->drive);

@@ -78,14 +78,17 @@ void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, d
         axis->coupling_hooks->failed(axis);
 }
 
-static void fail_without_program(cm1e_axis_t *axis, int64_t time_ns)
+/* `bound`: CM1E_AXIS_EVERY_CYCLE_LATE, or 0. */
+static void fail_without_program(cm1e_axis_t *axis, int64_t time_ns, double bound)
 {
     if (axis_led(axis))
         cm1e_axis_lead_fail(axis, CM1E_ERROR_PROGRAM); /* all in step: they stay on the path */
     else
         cm1e_axis_fail(axis, CM1E_ERROR_PROGRAM, 0.0, 0.0);
-    if (axis->fault.error == CM1E_ERROR_PROGRAM)
-        axis->fault.value = (double)time_ns / (double)MS_IN_NS;
+    if (axis->fault.error != CM1E_ERROR_PROGRAM)
+        return;
+    axis->fault.value = (double)time_ns / (double)MS_IN_NS;
+    axis->fault.bound = bound;
 }
 
 void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_ns)
@@ -97,16 +100,34 @@ void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_n
     if (axis->state == CM1E_AXIS_ERROR_STOP)
         return;
     axis->fault.task = task;
-    fail_without_program(axis, limit_ns);
+    fail_without_program(axis, limit_ns, 0.0);
+}
+
+/* Whether it has torque, or is about to get it. */
+static bool needs_program(const cm1e_axis_t *axis)
+{
+    const bool torque = axis->state != CM1E_AXIS_DISABLED || axis->power.enable || axis->drive.command.enable;
+    return torque && axis->config->type != CM1E_AXIS_ENCODER;
 }
 
 void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns)
 {
-    const bool torque = axis->state != CM1E_AXIS_DISABLED || axis->power.enable || axis->drive.command.enable;
-    if (!torque || axis->state == CM1E_AXIS_ERROR_STOP || axis->config->type == CM1E_AXIS_ENCODER)
+    if (!needs_program(axis) || axis->state == CM1E_AXIS_ERROR_STOP)
         return;
     axis->fault.task = NULL;
-    fail_without_program(axis, pause_ns);
+    fail_without_program(axis, pause_ns, 0.0);
+}
+
+void cm1e_axis_ran_late(cm1e_axis_t *axis, int64_t late_ns)
+{
+    if (!needs_program(axis))
+        return;
+    if (axis->state != CM1E_AXIS_ERROR_STOP) {
+        axis->fault.task = NULL;
+        fail_without_program(axis, late_ns, CM1E_AXIS_EVERY_CYCLE_LATE);
+    }
+    if (!axis_free(axis) && !drive_moves(axis)) /* a drive that homes, or moves by its own profile, brakes by itself */
+        cm1e_axis_become_free(axis);
 }
 
 /* Begins to brake at the actual state, no faster and no farther than the set-point would have gone, or went before a

@@ -67,6 +67,13 @@ static void range_text(const cm1e_axis_t *axis, char *text, size_t size)
 
 static void program_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
+    if (!axis->fault.task && axis->fault.bound == CM1E_AXIS_EVERY_CYCLE_LATE) {
+        snprintf(text, size,
+                 "Axis \"%s\": every cycle of the last %.0f ms was late, so that no set-point could move, and no ramp "
+                 "end. Its torque was taken away. Take a longer cycle time, or find out what takes so long (statistics "
+                 "of the scheduler); then reset the axis with MC_Reset.", axis->config->name, axis->fault.value);
+        return;
+    }
     if (!axis->fault.task) {
         snprintf(text, size,
                  "Axis \"%s\": no frame was sent for %.0f ms: the process was stopped or suspended, a task took so "

@@ -136,27 +136,32 @@ static int64_t cycle_of(const cm1e_scheduler_t *s, int64_t time_ns)
     return (time_ns - s->start_ns) / s->cycle_time_ns;
 }
 
+static const int64_t watchdog_ns = 100 * MS_IN_NS, longest_late_ns = 2000 * MS_IN_NS;
+
 /** After a few missed cycles the motor has hardly slowed down; after more it is at rest (CSP). After the time of the
  *  watchdogs no motion begins again by itself, whether a drive has one or not: somebody may have resumed a program that
- *  was suspended for hours. */
-static void after_missed(cm1e_axis_t *axis, int64_t missed, int64_t silence_ns)
+ *  was suspended for hours. Nor does one go on for ever that gets no further, because every cycle is late. */
+static void after_missed(cm1e_axis_t *axis, int64_t missed, int64_t silence_ns, int64_t late_ns)
 {
-    static const int64_t watchdog_ns = INT64_C(100000000);
     if (missed > CM1E_AXIS_RIDDEN_OUT_CYCLES)
         cm1e_axis_after_pause(axis, silence_ns);
     else
         cm1e_axis_hold_cycle(axis, missed);
     if (silence_ns >= watchdog_ns)
         cm1e_axis_stood_still(axis, silence_ns);
+    if (late_ns >= longest_late_ns)
+        cm1e_axis_ran_late(axis, late_ns);
 }
 
 static void set_outputs(cm1e_scheduler_t *s)
 {
     const int64_t now_ns = cm1e_clock_now(s->clock), silence_ns = now_ns - s->sent_ns - s->cycle_time_ns;
     const int64_t missed = cycle_of(s, now_ns) - cycle_of(s, s->sent_ns) - 1; /* cycles in which no frame was sent */
+    /* However long a single pause is, it does not count for more than a stand-still. */
+    s->late_ns = missed > 0 ? s->late_ns + (silence_ns < watchdog_ns ? now_ns - s->sent_ns : watchdog_ns) : 0;
     s->sent_ns = now_ns;
     for (uint32_t i = 0; i < s->axis_count && missed > 0; i++)
-        after_missed(s->axes[i], missed, silence_ns);
+        after_missed(s->axes[i], missed, silence_ns, s->late_ns);
     if (s->heard_apart)
         cm1e_axis_meet(s->axes, s->axis_count);
     for (uint32_t i = 0; i < s->axis_count; i++)

@@ -58,6 +58,7 @@ struct cm1e_scheduler {
     int64_t number;        /**< number of this cycle; skipped cycles count */
     int64_t begin_ns;      /**< actual start of this cycle */
     int64_t sent_ns;       /**< time of the outputs of the last cycle */
+    int64_t late_ns;       /**< for so long every cycle was late */
 };
 
 /** The error of a function that got no scheduler. */

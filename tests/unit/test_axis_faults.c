@@ -497,6 +497,24 @@ static void test_a_motor_that_is_too_fast_to_be_caught_is_held_where_it_turns_ro
     }
 }
 
+/** The motor would go on with its last velocity. */
+static void test_the_ramp_of_an_error_by_velocity_ends_also_where_every_cycle_is_late(void)
+{
+    by_velocity_within(50.0);
+    bench_move_velocity(10.0);
+    bench_cycles(400);
+    cm1e_axis_fail(axis, CM1E_ERROR_PROGRAM, 0.0, 0.0);
+    int cycles = 0, velocity = 0;
+    for (; cycles < 1000 && bus.state == OPERATION_ENABLED; cycles++) {
+        velocity = bus.velocity_raw;
+        bench_inputs();
+        cm1e_axis_hold_cycle(axis, 1);
+        bench_outputs();
+    }
+    TEST_ASSERT_LESS_THAN_INT(300, cycles);
+    TEST_ASSERT_INT_WITHIN(5000, 0, velocity); /* while it had its torque */
+}
+
 /** No torque comes by a frame that is late, and the error says so. */
 static void test_where_every_cycle_is_late_no_drive_gets_its_torque(void)
 {
@@ -524,6 +542,7 @@ int main(void)
     RUN_TEST(test_a_silence_slows_an_axis_only_near_its_maximum_velocity);
     RUN_TEST(test_a_motor_that_does_not_rest_when_it_gets_its_torque_is_let_go);
     RUN_TEST(test_where_every_cycle_is_late_no_drive_gets_its_torque);
+    RUN_TEST(test_the_ramp_of_an_error_by_velocity_ends_also_where_every_cycle_is_late);
     RUN_TEST(test_a_motor_that_is_too_fast_to_be_caught_is_held_where_it_turns_round);
     RUN_TEST(test_bus_trouble_while_moving_holds_the_target_then_disables);
     RUN_TEST(test_a_motor_that_runs_away_loses_its_torque);

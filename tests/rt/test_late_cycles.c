@@ -1,0 +1,103 @@
+/**
+ * Every cycle is late, and stays so: the work of a cycle takes longer than its time. No set-point moves in a late cycle, so
+ * no motion, no ramp and no enabling ends. After two seconds every axis with torque is in ErrorStop, says why, and has
+ * none.
+ */
+#include <stdlib.h>
+
+#include "cm1e/sim.h"
+#include "machine.h"
+
+#define MS INT64_C(1000000)
+enum { ENABLED_AT = 3, MOVED_AT = 60, LATE_AT = 120, ENOUGH_MS = 2300 };
+
+typedef enum deed { DEED_NONE = 0, DEED_POWER_OFF, DEED_STOP, DEED_HOME, DEEDS } deed_t;
+
+typedef struct run {
+    machine_t machine;
+    MC_Power_t power;
+    MC_MoveVelocity_t turn;
+    MC_Stop_t stop;
+    MC_Home_t home;
+    deed_t deed;                          /**< what the program does while the cycles are late */
+    int late_at, late_ms, cycles, late_cycles;
+    bool told;                            /**< the axis is in ErrorStop with the words of this error */
+    cm1e_sim_probe_t probe;
+} run_t;
+
+static void look(run_t *run)
+{
+    cm1e_axis_info_t info = {0};
+    char text[CM1E_AXIS_ERROR_TEXT_BYTES];
+    cm1e_axis_read(run->machine.axis[0], &info);
+    cm1e_axis_error_text(run->machine.axis[0], text, sizeof text);
+    cm1e_sim_probe(cm1e_bus_segment(run->machine.bus), 1, &run->probe);
+    run->told = info.state == CM1E_AXIS_ERROR_STOP && strstr(text, "every cycle ");
+}
+
+static void program(void *context)
+{
+    run_t *run = context;
+    cm1e_clock_t *clock = cm1e_bus_clock(run->machine.bus);
+    look(run);
+    run->cycles++;
+    run->power.Enable = run->cycles >= ENABLED_AT && !(run->deed == DEED_POWER_OFF && run->late_cycles > 5);
+    MC_Power(&run->power);
+    const bool moves = run->power.Status && run->cycles >= MOVED_AT;
+    run->turn.Execute = moves && run->deed != DEED_HOME;
+    MC_MoveVelocity(&run->turn);
+    run->home.Execute = moves && run->deed == DEED_HOME;
+    MC_Home(&run->home);
+    run->stop.Execute = run->deed == DEED_STOP && run->late_cycles > 5;
+    MC_Stop(&run->stop);
+    if (run->cycles < run->late_at)
+        return;
+    run->late_cycles++;
+    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + run->late_ms * MS + MS / 2);
+    if (run->late_cycles * (run->late_ms + 1) >= ENOUGH_MS)
+        cm1e_scheduler_stop(run->machine.scheduler);
+}
+
+static void is_late(cm1e_mapping_t mapping, deed_t deed, int late_at, int late_ms)
+{
+    run_t run = {.machine = {.axis_count = 1, .mapping = mapping}, .deed = deed, .late_at = late_at, .late_ms = late_ms};
+    machine_open(&run.machine);
+    AXIS_REF_t *axis = &run.machine.axis[0];
+    run.power = (MC_Power_t){.Axis = axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    run.turn = (MC_MoveVelocity_t){.Axis = axis, .Velocity = 2};
+    run.stop = (MC_Stop_t){.Axis = axis};
+    run.home = (MC_Home_t){.Axis = axis};
+    machine_add(&run.machine, "turn", 0, 0, program, &run);
+    machine_run(&run.machine, 0);
+    ck_assert_msg(!run.probe.torque_on && (run.told || deed == DEED_POWER_OFF),
+                  "mapping %d, deed %d, from cycle %d on by %d ms: torque %d, told %d", mapping, deed, late_at, late_ms,
+                  run.probe.torque_on, run.told);
+    machine_close(&run.machine);
+}
+
+START_TEST(test_where_every_cycle_is_late_no_axis_keeps_its_torque)
+{
+    static const cm1e_mapping_t mappings[] = {CM1E_MAPPING_DYNAMIC, CM1E_MAPPING_CSV};
+    for (int m = 0; m < 2; m++)
+        for (int late_ms = 1; late_ms <= 4; late_ms++) {
+            for (deed_t deed = DEED_NONE; deed < DEEDS; deed++)
+                is_late(mappings[m], deed, LATE_AT, late_ms);
+            for (int at = 2; at < 25; at++)
+                is_late(mappings[m], DEED_NONE, at, late_ms);
+        }
+}
+END_TEST
+
+int main(void)
+{
+    Suite *suite = suite_create("cycles that are late for ever");
+    TCase *cases = tcase_create("late");
+    tcase_set_timeout(cases, 60);
+    tcase_add_test(cases, test_where_every_cycle_is_late_no_axis_keeps_its_torque);
+    suite_add_tcase(suite, cases);
+    SRunner *runner = srunner_create(suite);
+    srunner_run_all(runner, CK_ENV);
+    const int failed = srunner_ntests_failed(runner);
+    srunner_free(runner);
+    return failed ? EXIT_FAILURE : EXIT_SUCCESS;
+}
