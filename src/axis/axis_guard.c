@@ -103,20 +103,30 @@ static bounds_t bounds_between(const cm1e_motion_limits_t *most, double v0, doub
     return (bounds_t){either, either};
 }
 
-/* Checks the second difference of the set positions. Two ways make it: what the acceleration adds in a cycle to the way
- * of its first velocity, and what was missing in the cycle before to the way of its last velocity. Each of them may use
- * half of the limit. */
-static guard_t guard_second_difference(const cm1e_axis_t *axis, const from_t *next)
+/* u/s2. Two ways make the second difference of the set positions: what the acceleration adds in a cycle to the way of its
+ * first velocity (`early`), and what was missing in the cycle before to the way of its last velocity (`late`). Each of
+ * them may use half of the limit. */
+typedef struct differences {
+    double early, late, noise;
+} differences_t;
+
+static differences_t differences(const cm1e_axis_t *axis, const from_t *next, double step)
 {
     const double v0 = axis->setpoint.velocity, v = next->velocity, t = axis->cycle_s;
-    const bounds_t bounds = bounds_between(limits_of(axis), v0, v);
+    return (differences_t){2.0 * (step - v0 * t) / (t * t), 2.0 * (v * t - step) / (t * t),
+                           2e-9 / fabs(axis->position.scale) / (t * t) + 2e-13 * fabs(v) / t};
+}
+
+static guard_t guard_second_difference(const cm1e_axis_t *axis, const from_t *next)
+{
+    const double v = next->velocity;
+    const bounds_t bounds = bounds_between(limits_of(axis), axis->setpoint.velocity, v);
     const double step = cm1e_position_minus(next->position, axis->setpoint.position) / axis->position.scale;
-    const double early = 2.0 * (step - v0 * t) / (t * t), late = 2.0 * (v * t - step) / (t * t);
-    const double most = larger(early, late), least = smaller(early, late);
-    const double noise = 2e-9 / fabs(axis->position.scale) / (t * t) + 2e-13 * fabs(v) / t;
-    if (most > bounds.up * (1.0 + slack) + noise)
+    const differences_t made = differences(axis, next, step);
+    const double most = larger(made.early, made.late), least = smaller(made.early, made.late);
+    if (most > bounds.up * (1.0 + slack) + made.noise)
         return broken(v < 0.0 ? GUARD_DECELERATION : GUARD_ACCELERATION, most, bounds.up);
-    if (least < -bounds.down * (1.0 + slack) - noise)
+    if (least < -bounds.down * (1.0 + slack) - made.noise)
         return broken(v > 0.0 ? GUARD_DECELERATION : GUARD_ACCELERATION, -least, bounds.down);
     return broken(GUARD_KEPT, 0.0, 0.0);
 }
@@ -158,6 +168,21 @@ CM1E_RARE guard_t cm1e_axis_look_closely(const cm1e_axis_t *axis, const from_t *
     return guard;
 }
 
+static bool is_within(double difference, bounds_t bounds, double noise)
+{
+    return difference <= bounds.up * (1.0 + slack) + noise && -difference <= bounds.down * (1.0 + slack) + noise;
+}
+
+/* Whether a cycle in which the velocity changes its sign keeps both limits: the axis brakes in it if its way leads on,
+ * and accelerates already if that leads back. */
+static bool turns_within_limits(const cm1e_axis_t *axis, const from_t *next, double step)
+{
+    const cm1e_motion_limits_t *most = limits_of(axis);
+    const differences_t made = differences(axis, next, step);
+    return is_within(made.early, bounds_between(most, axis->setpoint.velocity, step), made.noise) &&
+           is_within(made.late, bounds_between(most, step, next->velocity), made.noise);
+}
+
 /* The largest change of the velocity in t, from acceleration a to b, without an acceleration above `most`. */
 static double largest_gain(double a, double b, double t, double jerk, double per_jerk, double most)
 {
@@ -188,6 +213,8 @@ CM1E_RARE bool cm1e_axis_guard_smooth(const cm1e_axis_t *axis, const from_t *nex
         return false;
     const double per_count = axis->guarding.per_count;
     const double step = cm1e_position_minus(next->position, axis->setpoint.position) * per_count;
+    if (v0 * v < 0.0 && !turns_within_limits(axis, next, step))
+        return false;
     /* Of a jerk for a cycle. */
     const double unit_a = per_jerk * per_t, unit_v = unit_a * per_t, unit_s = unit_v * per_t;
     const double x = (a - a0) * unit_a, y = (gain - a0 * t) * unit_v, z = (step - t * (v0 + t * a0 / 2.0)) * unit_s;

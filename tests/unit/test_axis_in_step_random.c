@@ -250,11 +250,14 @@ static void runs_of(way_in_t way, const char *name)
     TEST_ASSERT_EQUAL_INT(0, stopped);
 }
 
-/* In these the slave turns round with all of its deceleration, which is larger than its acceleration. */
+/* In these the slave turns round with all of its deceleration: in the first two that is larger than its acceleration, in
+ * the other two smaller. */
 static void test_slaves_that_turn_round(void)
 {
     run_seed(GEARS_IN_POSITION, "MC_GearInPos", 10392);
     run_seed(GEARS_IN_POSITION, "MC_GearInPos", 104200);
+    run_seed(GEARS_IN_POSITION, "MC_GearInPos", 458);
+    run_seed(GEARS_IN_POSITION, "MC_GearInPos", 303318);
 }
 
 static void test_gears_over_time(void) { runs_of(GEARS, "MC_GearIn"); }
