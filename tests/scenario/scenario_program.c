@@ -398,8 +398,11 @@ static void leave_modes(run_t *run)
         const machine_axis_t *axis = &run->axes[n];
         char order[40], answer[200];
         bool fails = axis->info.state == CM1E_AXIS_ERROR_STOP; /* or has an error that its axis does not know yet */
-        for (int i = 0; i < run->scenario->fault_count; i++)
-            fails = fails || (run->scenario->faults[i].kind == FAULT_BRIDGE_ERROR && (int)run->scenario->faults[i].axis == n);
+        for (int i = 0; i < run->scenario->fault_count; i++) {
+            const fault_kind_t kind = run->scenario->faults[i].kind;
+            const bool of_motor = kind == FAULT_BRIDGE_ERROR || kind == FAULT_BRIDGE_CABLE;
+            fails = fails || (of_motor && (int)run->scenario->faults[i].axis == n);
+        }
         const bool fails_in_cml = fails && program_has(run->scenario, n, strings);
         if (axis->channel == 0 || !(program_has(run->scenario, n, changers) || fails_in_cml))
             continue;
