@@ -257,6 +257,91 @@ static void test_lines_with_other_limits_take_hardly_longer_than_the_better_of_t
     TEST_ASSERT_TRUE(times <= better);
 }
 
+/** With much jerk a stop in arcs may be of more stages than a profile has room for: the best of them are found. */
+static void test_stops_of_many_stages_take_little_longer_than_on_a_line(void)
+{
+    static driven_t moment;
+    int stops = 0, slow = 0;
+    for (int i = 0; i < PATHS; i++) {
+        cm1e_path_config_t config = plain_config(3, 3, 500, 3000, 1e6);
+        config.axis[1].acceleration = 1500;
+        begin_path(&config, (double[CM1E_PATH_AXES]){0});
+        append_outline(5, 20, 0, true, 0);
+        do {
+            for (int k = 0; k < 3 && driven.now.phase == CM1E_PATH_MOVING; k++)
+                step_path();
+            moment = driven;
+            const double line_s = driven.now.path_velocity / 1500 + 1500 / 1e6;
+            slow += stopped_after() > 1.3 * line_s + 2 * config.cycle_s;
+            stops++;
+            driven = moment;
+            step_path();
+        } while (driven.now.phase == CM1E_PATH_MOVING);
+    }
+    TEST_ASSERT_LESS_THAN_INT(stops / 500, slow);
+}
+
+/** A segment with other limits, appended while the run is under way, does not slow what is before it. */
+static void test_what_is_appended_does_not_slow_the_run_under_way(void)
+{
+    for (double slower = 100; slower < 200; slower += 1) {
+        const cm1e_path_config_t config = plain_config(2, 2, 500, 3000, 60000);
+        begin_path(&config, (double[CM1E_PATH_AXES]){0});
+        cm1e_path_command_t command = command_of(200, 0, 0, CM1E_PATH_EXACT, 0);
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(&driven.path, (double[]){100, 0}, &command, NULL));
+        command.tag = driven.next_tag++;
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(&driven.path, (double[]){101, 0}, &command, NULL));
+        while (driven.now.position[0] < 40)
+            step_path();
+        command = command_of(slower, 0, 0, CM1E_PATH_EXACT, 0);
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(&driven.path, (double[]){200, 0}, &command, NULL));
+        while (driven.now.position[0] < 80) {
+            step_path();
+            CHECK_PATH(driven.now.path_velocity == 200);
+        }
+    }
+}
+
+/** Lines that hardly turn, so that they are passed exactly, with steps of the velocities of the axes. */
+static void test_next_to_a_break_of_the_tangent_the_acceleration_is_lower(void)
+{
+    for (int i = 0; i < PATHS; i++) {
+        const cm1e_path_config_t config = plain_config(2, 2, 500, 1000, 1e9);
+        double x = 0, y = 0, heading = random_between(0, 6);
+        begin_path(&config, (double[CM1E_PATH_AXES]){0});
+        for (int k = 0; k < SEGMENTS; k++) {
+            const cm1e_path_command_t command = command_of(0, 0, 0, CM1E_PATH_EXACT, 0);
+            const double length = random_between(2, 10);
+            heading += random_between(-0.001, 0.001);
+            x += length * cos(heading), y += length * sin(heading);
+            TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(&driven.path, (double[]){x, y}, &command, NULL));
+        }
+        run_path();
+        CHECK_PATH(driven.fastest > 50);
+    }
+}
+
+/** At an arc, what a transition deviates is found by trying. */
+static void test_a_transition_at_an_arc_uses_its_deviation(void)
+{
+    for (double radius = 1; radius < 50; radius *= 1.2) {
+        const cm1e_path_config_t config = plain_config(2, 2, 500, 3000, 60000);
+        begin_path(&config, (double[CM1E_PATH_AXES]){0});
+        cm1e_path_command_t command = command_of(0, 0, 0, CM1E_PATH_CORNER_DEVIATION, 0.01 * radius);
+        const double corner[] = {2 * radius, 0}, end[] = {4 * radius, radius};
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_arc_centre(&driven.path, (double[]){radius, 0}, corner,
+                                                               CM1E_PATH_COUNTER_CLOCKWISE, &command, NULL));
+        command.tag = driven.next_tag++;
+        TEST_ASSERT_EQUAL(CM1E_OK, cm1e_path_append_line(&driven.path, end, &command, NULL));
+        double nearest = INFINITY;
+        do {
+            step_path();
+            nearest = fmin(nearest, hypot(driven.now.position[0] - corner[0], driven.now.position[1]));
+        } while (driven.now.phase != CM1E_PATH_IDLE);
+        TEST_ASSERT_DOUBLE_WITHIN(0.025, 0.975, nearest / command.parameter);
+    }
+}
+
 /** Powers of two, so that nothing is rounded otherwise. */
 static double in_length, in_time;
 
@@ -346,6 +431,10 @@ int main(void)
     RUN_TEST(test_lines_with_other_limits_take_hardly_longer_than_the_better_of_two_ways);
     RUN_TEST(test_a_stop_on_a_circle_brakes_harder_the_slower_it_is);
     RUN_TEST(test_stops_in_bends_take_little_longer_than_on_a_line);
+    RUN_TEST(test_stops_of_many_stages_take_little_longer_than_on_a_line);
+    RUN_TEST(test_what_is_appended_does_not_slow_the_run_under_way);
+    RUN_TEST(test_next_to_a_break_of_the_tangent_the_acceleration_is_lower);
+    RUN_TEST(test_a_transition_at_an_arc_uses_its_deviation);
     RUN_TEST(test_no_path_depends_on_the_units_of_length_and_time);
     return UNITY_END();
 }
