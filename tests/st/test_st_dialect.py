@@ -180,6 +180,9 @@ INTERFACE I METHOD M : INT VAR_INPUT a : INT := 6; END_VAR END_METHOD END_INTERF
 FUNCTION_BLOCK B IMPLEMENTS I METHOD M : INT VAR_INPUT a : INT := 6; END_VAR M := a; END_METHOD END_FUNCTION_BLOCK
 PROGRAM Main VAR a, b, c, d, e, q : INT; fb : B; i : I := fb; END_VAR a := F(); b := F(1); c := H(q); d := fb.M() + F(); e := i.M(); F(); END_PROGRAM
 """, 1, {"Main.a": 34, "Main.b": 14, "Main.c": 4, "Main.q": 1, "Main.d": 40, "Main.e": 6}),
+    # A method stands behind the name of a program, too.
+    ("bare", "PROGRAM Bare METHOD Go : INT Go := 5; END_METHOD END_PROGRAM PROGRAM Main; VAR n : INT; END_VAR n := Bare.Go(); END_PROGRAM",
+     1, {"Main.n": 5}),
     ("open_texts", """
 FUNCTION G : INT VAR_IN_OUT a : ARRAY[*] OF STRING(5); END_VAR a[1] := 'abcdefg'; G := LEN(a[2]); END_FUNCTION
 PROGRAM Main VAR x : ARRAY[1..3] OF STRING(5) := [3('ab')]; n : INT; END_VAR n := G(a := x); END_PROGRAM
