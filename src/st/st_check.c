@@ -185,6 +185,48 @@ static void called_instance(st_t *st, const unit_t *unit)
     cm1e_st_add_instance(st, unit->place, unit->name, NULL, unit->name, none);
 }
 
+static void mark_run(unit_t *unit)
+{
+    if (unit->runs)
+        return;
+    unit->runs = true;
+    for (size_t i = 0; i < unit->call_count; i++)
+        mark_run(unit->calls[i]);
+}
+
+/** The first unit that calls another one. */
+static const unit_t *caller_of(const st_t *st, const unit_t *callee)
+{
+    for (const unit_t *unit = st->tree.units; unit; unit = unit->next)
+        for (size_t i = 0; i < unit->call_count; i++)
+            if (unit->calls[i] == callee)
+                return unit;
+    return callee;
+}
+
+/** A program that does not run, or a method of one: that is what is to be told. */
+static bool is_of_idle_program(const unit_t *unit)
+{
+    const unit_t *owner = unit->object.owner ? unit->object.owner : unit;
+    return owner->kind == U_PROGRAM && !owner->runs;
+}
+
+/** Without a CONFIGURATION all programs run: a task runs them, or a call does. A call in what nobody calls does not, and
+ *  a task of its own could move what the call was to decide about: the program has to say. */
+static void check_all_run(st_t *st)
+{
+    for (unit_t *unit = st->tree.units; unit; unit = unit->next)
+        if (unit->kind == U_PROGRAM && !unit->called)
+            mark_run(unit);
+    for (const unit_t *unit = st->tree.units; unit; unit = unit->next) {
+        const unit_t *caller = unit->kind == U_PROGRAM && !unit->runs ? caller_of(st, unit) : NULL;
+        if (caller && !is_of_idle_program(caller))
+            cm1e_st_report(st, unit->place, "nothing runs the program \"%s\": it is called in \"%s\", and no program "
+                           "that runs calls that. Call it from a program, remove that call, or let a CONFIGURATION say "
+                           "which programs run", unit->name, cm1e_st_shown_name(st, caller));
+    }
+}
+
 static void check_configuration(st_t *st)
 {
     st->unit = NULL;
@@ -213,6 +255,8 @@ static void check_configuration(st_t *st)
             cm1e_st_report(st, unit->reached, "a variable of the program \"%s\" can be used here if that has one "
                            "instance; it has %d", unit->name, count);
     }
+    if (!st->tree.configuration && st->error_count == 0) /* else a call may lead in a circle */
+        check_all_run(st);
 }
 
 bool cm1e_st_check(st_t *st)

@@ -277,6 +277,7 @@ struct unit {
     bool external;
     place_t reached;     /**< of a program: where another one uses its variables; line 0: nowhere */
     bool called;         /**< of a program: by another one, so that no task runs it */
+    bool runs;           /**< without a CONFIGURATION: a program that runs calls it, or is it */
     bool impure;         /**< a function that can change more than its result */
     uint64_t stack;      /**< bytes of its locals and of what it calls */
     int mark;            /**< while the calls are followed: 0 new, 1 on the way, 2 done */

@@ -338,6 +338,11 @@ SOURCES = [
     ("PROGRAM A END_PROGRAM PROGRAM P VAR i : INT; END_VAR i := A(); END_PROGRAM", "1:59", ["a program has no result"]),
     ("PROGRAM A END_PROGRAM PROGRAM P A(x := 1); END_PROGRAM", "1:35", ['no input "x"']),
     ("PROGRAM A B(); END_PROGRAM PROGRAM B A(); END_PROGRAM", "1:", ["recursion"]),
+    ("FUNCTION_BLOCK F A(); END_FUNCTION_BLOCK PROGRAM A END_PROGRAM PROGRAM Main VAR f1 : F; END_VAR END_PROGRAM", "1:50",
+     ['nothing runs the program "A"', 'called in "F"', "CONFIGURATION"]),
+    ("PROGRAM A ACTION Act: B(); END_ACTION END_PROGRAM PROGRAM B END_PROGRAM", "1:59", ['nothing runs the program "B"', 'called in "A.Act"']),
+    ("FUNCTION_BLOCK F METHOD M A.Act(); A(); END_METHOD END_FUNCTION_BLOCK PROGRAM A ACTION Act: B(); END_ACTION END_PROGRAM PROGRAM B "
+     "END_PROGRAM PROGRAM Main VAR f1 : F; END_VAR f1(); END_PROGRAM", "1:79", ['nothing runs the program "A"', 'called in "F.M"']),
     ("INTERFACE I END_INTERFACE PROGRAM P I(); END_PROGRAM", "1:37", ["is an interface"]),
     ("FUNCTION F : INT VAR_STAT n : INT; END_VAR F := 1; END_FUNCTION", "1:27", ["keeps nothing", "function block"]),
     ("FUNCTION_BLOCK B VAR x : INT; END_VAR VAR_STAT p : REF_TO INT := REF(x); END_VAR END_FUNCTION_BLOCK", "1:66",
