@@ -103,9 +103,9 @@ static bounds_t bounds_between(const cm1e_motion_limits_t *most, double v0, doub
     return (bounds_t){either, either};
 }
 
-/* u/s2. Two ways make the second difference of the set positions: what the acceleration adds in a cycle to the way of its
- * first velocity (`early`), and what was missing in the cycle before to the way of its last velocity (`late`). Each of
- * them may use half of the limit. */
+/* u/s2. Two ways make the second difference of the set positions: what the acceleration adds in a cycle to the way of
+ * its first velocity (`early`), and what was missing in the cycle before to the way of its last velocity (`late`). Each
+ * of them may use half of the limit. */
 typedef struct differences {
     double early, late, noise;
 } differences_t;

@@ -168,14 +168,13 @@ typedef struct power {
                                          it has, or may have */
 } power_t;
 
-#define CM1E_AXIS_EVERY_CYCLE_LATE 1.0
 /** Why the axis is in ErrorStop. Written by axis_power.h and axis_power.c. */
 typedef struct fault {
     cm1e_error_t error;
     uint16_t device_error;
+    bool late;                      /**< the program did not stand still, but every cycle was late */
     double value, bound;            /**< numbers for the text */
-    const char *task;               /**< that did not return, of the scheduler; NULL: none, but a pause, or cycles that
-                                         were late, where `bound` is CM1E_AXIS_EVERY_CYCLE_LATE */
+    const char *task;               /**< that did not return, of the scheduler; NULL: none */
 } fault_t;
 
 /* ---- silence: axis_pause.h --------------------------------------------------------------------------------------- */

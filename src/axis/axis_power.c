@@ -78,17 +78,19 @@ void cm1e_axis_error_stop(cm1e_axis_t *axis, cm1e_error_t error, double value, d
         axis->coupling_hooks->failed(axis);
 }
 
-/* `bound`: CM1E_AXIS_EVERY_CYCLE_LATE, or 0. */
-static void fail_without_program(cm1e_axis_t *axis, int64_t time_ns, double bound)
+/* `task`: that did not return; NULL: none. */
+static void fail_without_program(cm1e_axis_t *axis, const char *task, bool late, int64_t time_ns)
 {
+    if (axis->state == CM1E_AXIS_ERROR_STOP)
+        return;
+    axis->fault.task = task;
+    axis->fault.late = late;
     if (axis_led(axis))
         cm1e_axis_lead_fail(axis, CM1E_ERROR_PROGRAM); /* all in step: they stay on the path */
     else
         cm1e_axis_fail(axis, CM1E_ERROR_PROGRAM, 0.0, 0.0);
-    if (axis->fault.error != CM1E_ERROR_PROGRAM)
-        return;
-    axis->fault.value = (double)time_ns / (double)MS_IN_NS;
-    axis->fault.bound = bound;
+    if (axis->fault.error == CM1E_ERROR_PROGRAM)
+        axis->fault.value = (double)time_ns / (double)MS_IN_NS;
 }
 
 void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_ns)
@@ -97,10 +99,7 @@ void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_n
         return;
     axis->power.enable = false;
     cm1e_axis_power_unsettle(axis);
-    if (axis->state == CM1E_AXIS_ERROR_STOP)
-        return;
-    axis->fault.task = task;
-    fail_without_program(axis, limit_ns, 0.0);
+    fail_without_program(axis, task, false, limit_ns);
 }
 
 /* Whether it has torque, or is about to get it. */
@@ -112,20 +111,15 @@ static bool needs_program(const cm1e_axis_t *axis)
 
 void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns)
 {
-    if (!needs_program(axis) || axis->state == CM1E_AXIS_ERROR_STOP)
-        return;
-    axis->fault.task = NULL;
-    fail_without_program(axis, pause_ns, 0.0);
+    if (needs_program(axis))
+        fail_without_program(axis, NULL, false, pause_ns);
 }
 
 void cm1e_axis_ran_late(cm1e_axis_t *axis, int64_t late_ns)
 {
     if (!needs_program(axis))
         return;
-    if (axis->state != CM1E_AXIS_ERROR_STOP) {
-        axis->fault.task = NULL;
-        fail_without_program(axis, late_ns, CM1E_AXIS_EVERY_CYCLE_LATE);
-    }
+    fail_without_program(axis, NULL, true, late_ns);
     if (!axis_free(axis) && !drive_moves(axis)) /* a drive that homes, or moves by its own profile, brakes by itself */
         cm1e_axis_become_free(axis);
 }

@@ -67,7 +67,7 @@ static void range_text(const cm1e_axis_t *axis, char *text, size_t size)
 
 static void program_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
-    if (!axis->fault.task && axis->fault.bound == CM1E_AXIS_EVERY_CYCLE_LATE) {
+    if (axis->fault.late) {
         snprintf(text, size,
                  "Axis \"%s\": every cycle of the last %.0f ms was late, so that no set-point could move, and no ramp "
                  "end. Its torque was taken away. Take a longer cycle time, or find out what takes so long (statistics "

@@ -211,8 +211,8 @@ static bool is_of_idle_program(const unit_t *unit)
     return owner->kind == U_PROGRAM && !owner->runs;
 }
 
-/** Without a CONFIGURATION all programs run: a task runs them, or a call does. A call in what nobody calls does not, and
- *  a task of its own could move what the call was to decide about: the program has to say. */
+/** Without a CONFIGURATION all programs run: a task runs them, or a call does. A call in what nobody calls does not,
+ *  and a task of its own could move what the call was to decide about: the program has to say. */
 static void check_all_run(st_t *st)
 {
     for (unit_t *unit = st->tree.units; unit; unit = unit->next)
