@@ -490,6 +490,21 @@ static void test_after_an_absence_a_write_that_was_under_way_is_not_repeated(voi
     expect_csp_after_an_absence();
 }
 
+/* Nor is one that was waited for, if the read of the mode fails meanwhile. */
+static void test_after_an_absence_a_write_that_was_not_confirmed_is_not_repeated(void)
+{
+    fake_bridge.mode_shown = CSP;
+    bus.sdo_delay = 10;
+    drive.command.mode = (cm1e_mode_t)CML;
+    while (writes_of_mode() == 0 || drive.change.sdo.write)
+        bench_cycle();
+    fake_bridge.broken_sdo = true;
+    bus.watch.al_state = CM1E_AL_SAFE_OP;
+    bench_cycles(20);
+    fake_bridge.broken_sdo = false;
+    expect_csp_after_an_absence();
+}
+
 /* Which mode the motor is in is unknown until 0x6061 shows the one that was written. */
 static void test_a_switch_is_not_overtaken_by_the_next_one(void)
 {
@@ -669,6 +684,7 @@ int main(void)
     RUN_TEST(test_power_off_in_cml_is_not_seen_and_that_is_said);
     RUN_TEST(test_after_an_absence_the_mode_that_is_found_counts);
     RUN_TEST(test_after_an_absence_a_write_that_was_under_way_is_not_repeated);
+    RUN_TEST(test_after_an_absence_a_write_that_was_not_confirmed_is_not_repeated);
     RUN_TEST(test_a_switch_is_not_overtaken_by_the_next_one);
     RUN_TEST(test_after_a_switch_that_was_given_up_another_mode_can_be_commanded);
     RUN_TEST(test_a_dead_end_counts_from_its_write_on);
