@@ -120,6 +120,8 @@ void variable_text(const json_t *row, char *text, size_t size)
 
 /* ---- read -------------------------------------------------------------------------------------------------------- */
 
+static bool is_time(const json_t *row) { return strcmp(text_of(row, "unit"), "ns") == 0; }
+
 /** What is between the quotes; NULL: there are none, or it is no UTF-8. */
 static json_t *text_within(const char *text)
 {
@@ -159,7 +161,7 @@ static json_t *literal_value(const json_t *row, const char *word)
 {
     char why[300];
     st_literal_t literal;
-    const bool time = strcmp(text_of(row, "unit"), "ns") == 0;
+    const bool time = is_time(row);
     static const char *const times[] = {"TIME", "DATE", "TOD", "DT"};
     if (!cm1e_st_read_literal(word, &literal, why, sizeof why)) {
         complain("%s: \"%s\" is no value: %s", text_of(row, "name"), word, why);
@@ -187,8 +189,8 @@ static const char *right_words(const json_t *row)
     return strcmp(type, "STRING") == 0 || strcmp(type, "WSTRING") == 0 ? "a text in quotes: \"'text'\""
            : strcmp(type, "BOOL") == 0 ? "TRUE or FALSE"
            : json_object_get(row, "enumerator") ? "the name of an enumerator"
-           : strcmp(text_of(row, "unit"), "ns") == 0 ? "a time as T#1m5s, or a number of ns"
-                                                     : "a number, as 12, 1.5 or 16#FF";
+           : is_time(row) ? "a time as T#1m5s, D#2024-02-29, TOD#23:59:59 or DT#2024-02-29-23:59:59"
+                          : "a number, as 12, 1.5 or 16#FF";
 }
 
 /** A number for a REAL: one of more than 63 bits is no text of digits there. Takes `value` over. */
@@ -202,11 +204,13 @@ static json_t *as_real(json_t *value)
     return real;
 }
 
+/** A time is none without its unit: 5 would be 5 ms in a program, and is 5 ns in JSON. */
 static json_t *any_value(const json_t *row, const char *word)
 {
     const bool enumeration = json_object_get(row, "enumerator"), text = strstr(text_of(row, "type"), "STRING");
-    json_t *value = text ? text_within(word) : plain_number(word);
-    if (!value && !text && (strcasecmp(word, "TRUE") == 0 || strcasecmp(word, "FALSE") == 0))
+    const bool plain = !text && !is_time(row);
+    json_t *value = text ? text_within(word) : plain ? plain_number(word) : NULL;
+    if (!value && plain && (strcasecmp(word, "TRUE") == 0 || strcasecmp(word, "FALSE") == 0))
         value = json_boolean(strcasecmp(word, "TRUE") == 0);
     if (!value && enumeration && !(word[0] >= '0' && word[0] <= '9'))
         value = *word ? json_string(word) : NULL;
