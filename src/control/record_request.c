@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "axis/axis_api.h"
+#include "control/variable_request.h"
 #include "scheduler/variables.h"
 
 enum { EVERY_MOST = 10000 };
@@ -35,8 +36,9 @@ static cm1e_error_t add_within(recorder_t *recorder, const variables_t *variable
     }
     if (found)
         return error;
-    return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0,
-                         "The program has no variable \"%.100s\": `variables` lists them.", path);
+    char text[500];
+    cm1e_variable_unknown(variables, path, text, sizeof text);
+    return cm1e_diag_set(diag, CM1E_ERROR_NOT_FOUND, 0, "%s", text);
 }
 
 /** Those that the request names, or else those that the program records. */

@@ -119,15 +119,30 @@ static bool take_value(const json_t *value, const variable_t *variable, variable
     return json_is_string(value) && cm1e_variable_text_take(variable, value, out->bytes);
 }
 
-bool cm1e_variable_named(const view_t *view, const char *name, uint32_t *row, char *text, size_t size)
+/** The last name of a path is meant where it is all that was typed: go for Main.go. */
+static bool ends_with(const char *path, const char *name)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcasecmp(dot + 1, name) == 0;
+}
+
+void cm1e_variable_unknown(const variables_t *variables, const char *name, char *text, size_t size)
 {
     char meant[CM1E_NEAR_TEXT_BYTES];
-    const variables_t *variables = cm1e_scheduler_variables(view->scheduler);
     cm1e_near_t near = {.word = name};
-    *row = cm1e_variables_find(variables, name);
-    for (uint32_t i = 0; i < variables->count && *row == variables->count; i++)
+    for (uint32_t i = 0; i < variables->count; i++)
         cm1e_near_look(&near, variables->rows[i].name);
+    for (uint32_t i = 0; i < variables->count && !near.nearest; i++)
+        near.nearest = ends_with(variables->rows[i].name, name) ? variables->rows[i].name : NULL;
     snprintf(text, size, "The program has no variable \"%.200s\"%s", name, cm1e_near_text(&near, meant, sizeof meant));
+}
+
+bool cm1e_variable_named(const view_t *view, const char *name, uint32_t *row, char *text, size_t size)
+{
+    const variables_t *variables = cm1e_scheduler_variables(view->scheduler);
+    *row = cm1e_variables_find(variables, name);
+    if (*row == variables->count)
+        cm1e_variable_unknown(variables, name, text, size);
     return *row < variables->count;
 }
 

@@ -29,6 +29,8 @@ typedef struct variable_order {
 bool cm1e_variables_begin(variable_order_t *order, const view_t *view, uint32_t from, uint32_t most, bool forced);
 /** Finds the row of a variable by its name; false: there is none, which `text` says. */
 bool cm1e_variable_named(const view_t *view, const char *name, uint32_t *row, char *text, size_t size);
+/** That the program has no such variable, and which one may have been meant. */
+void cm1e_variable_unknown(const variables_t *variables, const char *name, char *text, size_t size);
 /** The list, when the cycle has read it. */
 json_t *cm1e_variables_show(const variable_order_t *order, const view_t *view);
 /** Number of the first variable behind the list; 0: there is none. */

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/bytes.h"
+#include "core/near.h"
 
 static const char trigger_mark[] = "trigger: ";
 
@@ -103,6 +104,17 @@ static uint32_t find_column(const trace_t *trace, const char *name)
     return i;
 }
 
+/** That the trace has no such signal, and which one may have been meant. */
+static cm1e_error_t unknown_column(const trace_t *trace, const char *name, cm1e_diag_t *diag)
+{
+    char meant[CM1E_NEAR_TEXT_BYTES];
+    cm1e_near_t near = {.word = name};
+    for (uint32_t i = 0; i < trace->column_count; i++)
+        cm1e_near_look(&near, trace->columns[i].name);
+    return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The trace has no signal \"%s\" for a trigger%s", name,
+                         cm1e_near_text(&near, meant, sizeof meant));
+}
+
 static cm1e_error_t check_column(const trace_t *trace, const trace_column_t *column, cm1e_diag_t *diag)
 {
     if (trace->begun)
@@ -158,8 +170,7 @@ cm1e_error_t cm1e_trace_set_trigger(trace_t *trace, const cm1e_trace_trigger_t *
     if (trigger->kind > CM1E_TRACE_ON_ERROR_STOP) {
         t.column = signal ? find_column(trace, signal) : trace->column_count;
         if (t.column == trace->column_count)
-            return cm1e_diag_set(diag, CM1E_ERROR_INVALID_ARGUMENT, 0, "The trace has no signal \"%s\" for a trigger.",
-                                 signal ? signal : "");
+            return unknown_column(trace, signal ? signal : "", diag);
     }
     snprintf(t.text, sizeof t.text, "%s%s", trigger_mark, signal ? signal : "");
     trace->trigger = t;

@@ -121,6 +121,7 @@ def check_triggers():
         for words, why in ((["--trigger", "rising:X actual position", "--for", "1"], "expected error-stop"),
                            (["--trigger", "sometimes", "--for", "1"], "sometimes"),
                            (["--trigger", "change:nothing", "--for", "1"], "no signal \"nothing\""),
+                           (["--trigger", "rising:X actual positoin:1", "--for", "1"], 'did you mean "X actual position"'),
                            (["--trigger", "error-stop"], "needs --for"), (["--before", "1"], "--before"),
                            (["--object", "X"], "AXIS:INDEX"), (["--object", "X:0x1018"], "not in the process data"),
                            (["--for", "80000"], "--every"), (["--every", "0"], "whole number 1 ... 10000")):

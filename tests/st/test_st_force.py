@@ -112,6 +112,7 @@ def check_values(run):
     expect(run.value("goal") == -1.5 and run.value("big") == -9007199254740993, "set", run.rows())
     run.var("set", "Main.goal=1", status=2, says="--allow-write")
     run.var("set", "--allow-write", "Main.nothing=1", status=2, says="no variable")
+    run.var("set", "--allow-write", "goal=1", status=2, says='did you mean "Main.goal"')
     for wrong, says in (("Main.n=32768", "Main.n (INT) takes -32768 ... 32767."), ("Main.n=1.5", "takes -32768 ... 32767."),
                         ("Main.copy=2", "Main.copy (BOOL) takes TRUE or FALSE."), ("Main.small=-129", "takes -128 ... 127."),
                         ("Main.r=1e39", "Main.r (REAL) takes a finite number up to 3.402823e+38."),
@@ -198,12 +199,12 @@ def check_exact(run):
         for wrong in (str(2**64), "-1", "", "1.5", "0x1"):
             reply = program.ask("variable", name="Main.most", value=wrong)
             expect(not reply["ok"], f"a ULINT is not {wrong}", reply)
-        program.ask("variable", name="Main.r", value=0.3)
         for wrong in (24 * 3600 * 10**9, -1):  # in JSON a time is ns
             reply = program.ask("variable", name="Main.clock", value=wrong)
             expect("Main.clock (TOD) takes 0 ... 86399999999999 ns." in str(reply), f"a TOD is not {wrong}", reply)
         program.ask("variable", name="Main.clock", value=15)
         expect(run.value("clock") == 15, "a TOD is written", run.value("clock"))
+        program.ask("variable", name="Main.r", value=0.3)
         both = program.ask("variables", name="Main.r", forced=True)
         expect(not both["ok"] and "exclude each other" in both["error"]["text"], "name and forced", both)
     log = run.log()
@@ -245,7 +246,7 @@ def check_trace(run):
     expect(len([name for name in columns(0, "") if name.startswith("Main.")]) == 128, "the first variables are recorded")
     chosen = columns(0, "", "--variable", "main.n", "--variable", "Main.table[2,-100]")
     expect(chosen[-2:] == ["Main.n", "Main.table[2,-100].here"], "chosen variables are recorded", chosen)
-    columns(2, "no variable", "--variable", "Main.tabl")
+    columns(2, 'no variable "Main.goall"; did you mean "Main.goal"', "--variable", "Main.goall")
     columns(2, "is a text", "--variable", "Main.text")
     columns(1, "256 variables", "--variable", "Main.table")
 
