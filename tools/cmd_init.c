@@ -324,7 +324,8 @@ static void print_counts(const init_t *init, const char *path)
     printf("%s: %u %s", path, init->axes, init->axes == 1 ? "axis" : "axes");
     if (init->slaves > 0)
         printf(", %u %s without an axis", init->slaves, init->slaves == 1 ? "slave" : "slaves");
-    printf("\n");
+    printf(".\nNext: complete units and limits in it; `cm1e check %s` looks at it, `cm1e status -b %s` at the network\n",
+           path, path);
 }
 
 static int write_file(const init_t *init, const init_options_t *options, char *const networks[])
@@ -377,6 +378,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         options->output = arg;
         return 0;
     case KEY_FORCE: options->force = true; return 0;
+    case ARGP_KEY_ARG:
+        argp_error(state, "\"%s\" is too many: a network is named as in -i eth1, the file as in -o machine.yaml", arg);
+        return EINVAL;
     case ARGP_KEY_END:
         if (options->networks == 0)
             argp_error(state, "the network interface is missing: -i INTERFACE");

@@ -67,9 +67,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case ARGP_KEY_END:
         if (!options->program)
             argp_error(state, "which program? `cm1e st build machine.st` makes machine.so");
-        if (!options->common.bus_file && !(options->common.interface_name && simulated(options->common.interface_name)))
-            argp_error(state, "-b BUS-FILE is needed: it says which axes there are. \"-i sim\" alone simulates a machine "
-                       "with the axes of the program");
         need_trace_files(state, options->files, FILES);
         return 0;
     default: return ARGP_ERR_UNKNOWN;
@@ -277,6 +274,11 @@ static int begin_program(st_loaded_t *loaded, const run_options_t *options)
 /** The network of the bus file; without one a simulated machine that has the axes of the program. */
 static bool load_machine(const st_loaded_t *loaded, const run_options_t *options, cm1e_bus_config_t *config)
 {
+    if (!options->common.bus_file && !(options->common.interface_name && simulated(options->common.interface_name))) {
+        complain("-b BUS-FILE is needed: it says which axes there are. \"-i sim\" alone simulates a machine with the axes "
+                 "of the program");
+        return false;
+    }
     if (!load_configuration(&options->common, config))
         return false;
     if (options->common.bus_file)

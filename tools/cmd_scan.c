@@ -201,6 +201,9 @@ static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *co
         print_json(slaves);
     } else {
         print_table(bus, named, scan->pdos);
+        if (named->axis_count + named->slave_count == 0)
+            printf("Next: `cm1e init -i %s -o machine.yaml` writes a bus file of what is there\n",
+                   cm1e_bus_configuration(bus)->interface_name);
         tell_simulated(cm1e_bus_configuration(bus));
     }
     /* A bus file states the expected slaves: compare. */

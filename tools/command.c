@@ -45,6 +45,9 @@ static error_t parse_common(int key, char *arg, struct argp_state *state)
     case KEY_NETWORK: options->network = arg; return 0;
     case KEY_JSON: options->json = want_json(); return 0;
     case KEY_PCAP: options->pcap_file = arg; return 0;
+    case ARGP_KEY_ARG: /* that the command itself has no use for */
+        argp_error(state, "\"%s\" is too many: a network is named as in -i eth1, a bus file as in -b machine.yaml", arg);
+        return EINVAL;
     default: return ARGP_ERR_UNKNOWN;
     }
 }

@@ -124,7 +124,7 @@ def signals(path):
 def check_slaves(folder):
     """What the file names is there, on that network and on the segment that the simulator makes of the file itself."""
     done, path, text = init(folder, "slaves", SLAVES)
-    expect("1 axis, 6 slaves without an axis" in done.stdout, f"{done}")
+    expect("1 axis, 6 slaves without an axis.\nNext: " in done.stdout, f"{done}")
     expect("The simulator has no such device" not in text, text)
     for wanted in (r"- name: io1\n.*position: 1 .*\n.*product: 0x000C0000\n.*\n    sim: \{device: coupler\}",
                    r"alias: 1001 .*\n    vendor: 0x00000002\n    product: 0x03F03052\n",
