@@ -70,6 +70,17 @@ static void set_place_of_offset(cm1e_config_problem_t *problem, const uint8_t *b
     }
 }
 
+/** A line of the file, counted from 1, is indented by a tab: YAML wants spaces, and its parser does not say so. */
+static bool has_tab(const uint8_t *bytes, size_t size, size_t line)
+{
+    size_t at = 0;
+    for (; at < size && line > 1; at++)
+        line -= bytes[at] == '\n';
+    while (at < size && bytes[at] == ' ')
+        at++;
+    return at < size && bytes[at] == '\t';
+}
+
 static cm1e_error_t parser_error(const yaml_parser_t *parser, const uint8_t *bytes, size_t size,
                                  cm1e_config_problem_t *problem)
 {
@@ -82,7 +93,9 @@ static cm1e_error_t parser_error(const yaml_parser_t *parser, const uint8_t *byt
     else
         set_place(problem, parser->problem_mark);
     const char *what = parser->problem ? parser->problem : "syntax error";
-    if (parser->context)
+    if (has_tab(bytes, size, problem->line))
+        snprintf(problem->text, sizeof problem->text, "not YAML: a tab; expected spaces, by which lines are indented");
+    else if (parser->context)
         snprintf(problem->text, sizeof problem->text, "not YAML: %s (%s)", what, parser->context);
     else
         snprintf(problem->text, sizeof problem->text, "not YAML: %s", what);
