@@ -426,12 +426,10 @@ static void step_taken(cm1e_axis_t *axis)
 
 static void fail(cm1e_axis_t *axis, cm1e_error_t error) { cm1e_axis_fail(axis, error, bits(axis), 0.0); }
 
-static bool timed_out(cm1e_axis_t *axis)
+static void fail_when_late(cm1e_axis_t *axis)
 {
-    if (axis->now_ns < axis->homing->drive.deadline_ns)
-        return false;
-    fail(axis, CM1E_ERROR_AXIS_HOMING_TIMEOUT);
-    return true;
+    if (axis->now_ns >= axis->homing->drive.deadline_ns)
+        fail(axis, CM1E_ERROR_AXIS_HOMING_TIMEOUT);
 }
 
 /* Waits until the homing has begun. The drive shows the bits of the last homing until then, so only a change of the
@@ -439,7 +437,7 @@ static bool timed_out(cm1e_axis_t *axis)
 static void step_start(cm1e_axis_t *axis)
 {
     cm1e_axis_set_to_actual(axis);
-    if (!axis->drive.feedback.online || timed_out(axis))
+    if (!axis->drive.feedback.online)
         return;
     const uint8_t now = bits(axis);
     const meaning_t meaning = meanings[now];
@@ -448,6 +446,8 @@ static void step_start(cm1e_axis_t *axis)
         next_step(axis);
     else if (axis->now_ns - axis->homing->drive.step_ns >= start_timeout_ns)
         fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
+    else
+        fail_when_late(axis);
 }
 
 static bool completed(cm1e_axis_t *axis, meaning_t meaning)
@@ -470,7 +470,7 @@ static void step_run(cm1e_axis_t *axis)
     else if (meaning == FAILED || axis->now_ns - home->told_ns >= interrupted_ns)
         fail(axis, CM1E_ERROR_AXIS_HOMING_FAILED);
     else
-        timed_out(axis);
+        fail_when_late(axis);
 }
 
 /* Waits for standstill. A drive may say too early that it has homed, and while the mode is switched the target rests:
