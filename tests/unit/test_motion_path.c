@@ -393,6 +393,29 @@ static void test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there(voi
     TEST_ASSERT_EQUAL(4, driven.done_tag);
 }
 
+/* The last stop is as it was told; what comes behind it has the other override. */
+static void test_an_override_during_the_last_stop_acts_behind_it(void)
+{
+    const cm1e_path_config_t config = plain_config(2, 2, 1000, 10000, 1e6);
+    for (int goes_on = 0; goes_on < 2; goes_on++) {
+        begin_path(&config, ORIGIN);
+        line((double[]){100, 0}, 100, CM1E_PATH_STOP, 0);
+        for (int i = 0; i < 500; i++)
+            step_path();
+        cm1e_path_clear(&driven.path);
+        cm1e_path_override(&driven.path, 0.5);
+        driven.done_tag = 2; /* of the next one */
+        if (!goes_on)
+            (void)run_path();
+        line((double[]){0, 50}, 100, CM1E_PATH_STOP, 0);
+        while (driven.now.active != 2)
+            step_path();
+        driven.fastest = 0;
+        (void)run_path();
+        TEST_ASSERT_DOUBLE_WITHIN(1e-9, 50, driven.fastest);
+    }
+}
+
 /* The second segment is to be begun from rest. Wherever the first one is cut off, also where it comes to rest as soon as
  * it can in any case, only a part of it is left, and the path ends where it says. */
 static void test_a_segment_that_comes_to_rest_in_any_case_is_the_last_one(void)
@@ -518,6 +541,7 @@ int main(void)
     RUN_TEST(test_a_transition_that_is_given_up_leaves_the_way_ahead_as_it_was);
     RUN_TEST(test_override_slows_pauses_and_goes_on);
     RUN_TEST(test_absurdly_slow_commands_do_not_jump);
+    RUN_TEST(test_an_override_during_the_last_stop_acts_behind_it);
     RUN_TEST(test_a_segment_that_comes_to_rest_in_any_case_is_the_last_one);
     RUN_TEST(test_the_extremes_of_the_velocity_are_those_of_a_search);
     RUN_TEST(test_what_is_cut_off_is_not_done_and_the_path_goes_on_from_there);
