@@ -71,6 +71,9 @@ static void setting(st_t *st, task_t *task, arg_t *arg)
 {
     cm1e_st_expression(st, arg->value);
     int64_t value = 0;
+    for (const arg_t *other = task->settings; other != arg; other = other->next)
+        if (strcasecmp(other->name, arg->name) == 0)
+            cm1e_st_report(st, arg->place, "%s stands here twice", arg->name);
     if (strcasecmp(arg->name, "SINGLE") == 0) {
         single(st, task, arg);
     } else if (strcasecmp(arg->name, "INTERVAL") == 0) {

@@ -107,6 +107,9 @@ static void check_section(st_t *st, var_t *var)
     const unit_t *unit = var->unit;
     if ((var->qualifiers & Q_RETAIN) && var->section != V_LOCAL && var->section != V_GLOBAL)
         cm1e_st_report(st, var->place, "RETAIN is for VAR and VAR_GLOBAL only");
+    if ((var->qualifiers & Q_RETAIN) && (var->qualifiers & (Q_NON_RETAIN | Q_CONSTANT)))
+        cm1e_st_report(st, var->place, "RETAIN contradicts %s",
+                       var->qualifiers & Q_CONSTANT ? "CONSTANT: a constant needs no file" : "NON_RETAIN");
     if ((var->qualifiers & Q_RETAIN) && unit && cm1e_st_is_function(unit))
         cm1e_st_report(st, var->place, "a function keeps nothing: RETAIN is for programs, blocks and global variables");
     if ((var->qualifiers & Q_CONSTANT) && (var->section == V_OUTPUT || var->section == V_TEMP))
@@ -142,6 +145,9 @@ static void check_external(st_t *st, var_t *var)
     var->type = cm1e_st_resolve(st, var->type);
     if (var->global) /* VAR_STAT, VAR_INST */
         return;
+    if (var->initial || var->address)
+        cm1e_st_report(st, var->place, "VAR_EXTERNAL only names a global variable: its %s stands in VAR_GLOBAL",
+                       var->initial ? "initial value" : "address");
     var->global = cm1e_st_map_get(st->globals, var->name);
     if (!var->global) {
         cm1e_st_report(st, var->place, "there is no global variable \"%s\" (VAR_GLOBAL)%s", var->name,

@@ -338,6 +338,12 @@ SOURCES = [
     ("PROGRAM A END_PROGRAM PROGRAM P VAR i : INT; END_VAR i := A(); END_PROGRAM", "1:59", ["a program has no result"]),
     ("PROGRAM A END_PROGRAM PROGRAM P A(x := 1); END_PROGRAM", "1:35", ['no input "x"']),
     ("PROGRAM A B(); END_PROGRAM PROGRAM B A(); END_PROGRAM", "1:", ["recursion"]),
+    ("VAR_GLOBAL x : INT; END_VAR PROGRAM P VAR_EXTERNAL x : INT := 5; END_VAR END_PROGRAM", "1:52", ["its initial value stands in VAR_GLOBAL"]),
+    ("VAR_GLOBAL x : BOOL; END_VAR PROGRAM P VAR_EXTERNAL x AT %IX1.0.0 : BOOL; END_VAR END_PROGRAM", "1:53", ["its address stands in VAR_GLOBAL"]),
+    ("PROGRAM P VAR RETAIN NON_RETAIN x : INT; END_VAR END_PROGRAM", "1:33", ["RETAIN contradicts NON_RETAIN"]),
+    ("PROGRAM P VAR CONSTANT RETAIN x : INT := 3; END_VAR END_PROGRAM", "1:31", ["RETAIN contradicts CONSTANT"]),
+    ("CONFIGURATION C RESOURCE R ON PC TASK t (INTERVAL := T#1ms, interval := T#2ms); PROGRAM p WITH t : P; END_RESOURCE "
+     "END_CONFIGURATION PROGRAM P END_PROGRAM", "1:61", ["interval stands here twice"]),
     ("FUNCTION_BLOCK F A(); END_FUNCTION_BLOCK PROGRAM A END_PROGRAM PROGRAM Main VAR f1 : F; END_VAR END_PROGRAM", "1:50",
      ['nothing runs the program "A"', 'called in "F"', "CONFIGURATION"]),
     ("PROGRAM A ACTION Act: B(); END_ACTION END_PROGRAM PROGRAM B END_PROGRAM", "1:59", ['nothing runs the program "B"', 'called in "A.Act"']),
