@@ -341,8 +341,8 @@ static int32_t next_position(const cm1e_drive_t *drive)
     return (int32_t)((uint32_t)last + (uint32_t)slewed(0, (int32_t)cm1e_drive_way_between(last, wanted), step));
 }
 
-/* A motor that turned on in a pause, as it got its torque, may be far from the last target. The next one goes there in no
- * larger step than that of a motor. */
+/* A motor that turned on in a pause, as it got its torque, may be far from the last target. The next one goes there in
+ * no larger step than that of a motor. */
 static int32_t within_reach(const cm1e_drive_t *drive, int32_t position)
 {
     if (!may_follow(drive) || drive->mode.wanted->mode != CM1E_MODE_CSP)
