@@ -225,6 +225,23 @@ static void judge_path(void)
         wrong("at %.6f, %.6f it is not on its path", first.set_position, second.set_position);
 }
 
+/** While one bus is silent the other axis already brakes. What both buses lose at once leaves nobody behind, so the path
+ *  does not come to rest. */
+static void judge_silence(void)
+{
+    const double nothing = 1e-9, farther = 1e-6;
+    const bool one = loses(A) != loses(B), both = loses(A) && loses(B) && run.shift == 0;
+    const int other = loses(A) ? B : A, last = run.lose_at + run.length - 1;
+    if (!run.pattern || run.cycle > END || run.times > 1 || run.seen[A].ended || run.seen[B].ended)
+        return;
+    const double way = path[run.cycle][other] - path[run.cycle - 1][other], x = see(A).set_position;
+    const double late = fabs(see(other).set_position - path[run.cycle][other]);
+    if (one && run.length == 9 && run.shift == 0 && run.cycle == last && fabs(way) > farther && late < nothing)
+        wrong("axis %d goes on along the path, and the other one is silent", other);
+    if (both && run.length <= 2 && x > 0.1 && x < corner[LINES - 1][A] - 0.1 && see(A).set_velocity < nothing)
+        wrong("both lost the same cycles, and the path comes to rest");
+}
+
 /** Both buses silent at once for longer than is ridden out: as on one bus, an axis by velocity leaves its path. */
 static bool leaves_path(void)
 {
@@ -307,6 +324,7 @@ static void move_group(bool powered)
         MC_MoveLinearAbsolute(&lines[i]);
     }
     judge_path();
+    judge_silence();
 }
 
 static void program(void *context)
