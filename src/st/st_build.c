@@ -215,7 +215,7 @@ static var_t *keep(st_t *st, unit_t *unit, var_t *var, section_t section)
     var->section = V_EXTERNAL;
     var->global = kept;
     var->initial = var->address = NULL;
-    var->init_args = NULL;
+    var->init_args = var->init_elements = NULL;
     return kept;
 }
 

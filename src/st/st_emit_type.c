@@ -272,12 +272,19 @@ void cm1e_st_emit_initial(st_t *st, const char *target, type_t *type, const expr
 
 void cm1e_st_emit_var_initial(st_t *st, const char *target, const var_t *var)
 {
-    if (var->type->kind != T_BLOCK || !cm1e_st_init_takes(var->type->unit)) {
+    const bool takes = var->type->kind == T_BLOCK && cm1e_st_init_takes(var->type->unit);
+    if (!takes && !var->init_elements) {
         cm1e_st_emit_initial(st, target, var->type, var->initial);
         return;
     }
     emit_default(st, target, var->type);
-    emit_init_calls(st, var->type->unit, cm1e_st_format(st->arena, "&%s", target), var);
+    if (takes)
+        emit_init_calls(st, var->type->unit, cm1e_st_format(st->arena, "&%s", target), var);
+    unsigned n = 0;
+    for (const arg_t *inputs = var->init_elements; inputs; inputs = inputs->next) {
+        const var_t element = cm1e_st_init_element(var, inputs);
+        emit_init_calls(st, element.type->unit, cm1e_st_format(st->arena, "&%s.at[%u]", target, n++), &element);
+    }
     if (var->initial)
         emit_given(st, target, var->type, var->initial);
 }

@@ -1,5 +1,6 @@
 /* FB_Init of TwinCAT: a method that is called when an instance gets its initial values, first that of the base. What it
- * takes beyond the two inputs that all have is given in the declaration: fb : FB_X(number := 3). */
+ * takes beyond the two inputs that all have is given in the declaration: fb : FB_X(number := 3), of an array
+ * fbs : ARRAY[1..2] OF FB_X[(number := 3), (number := 4)]. */
 #include <strings.h>
 
 #include "st/st_parsing.h"
@@ -65,7 +66,7 @@ static const arg_t *given(const var_t *instance, const char *name)
     return NULL;
 }
 
-void cm1e_st_check_init_args(st_t *st, var_t *var)
+static void check_given(st_t *st, const var_t *var)
 {
     const unit_t *unit = var->type->kind == T_BLOCK ? var->type->unit : NULL;
     for (arg_t *arg = var->init_args; arg; arg = arg->next) {
@@ -84,13 +85,54 @@ void cm1e_st_check_init_args(st_t *st, var_t *var)
                 cm1e_st_report(st, var->place, "FB_Init of %s needs \"%s\": %s : %s(%s := ...)", at->name,
                                parameter->name, var->name, unit->name, parameter->name);
     }
+}
+
+var_t cm1e_st_init_element(const var_t *array, const arg_t *inputs)
+{
+    var_t element = *array;
+    element.place = inputs->place;
+    element.type = array->type->element;
+    element.init_args = inputs->value->args;
+    return element;
+}
+
+static void check_elements(st_t *st, const var_t *var)
+{
+    const uint64_t elements = var->type->element->size ? var->type->size / var->type->element->size : 0;
+    uint64_t count = 0;
+    for (const arg_t *arg = var->init_elements; arg; arg = arg->next) {
+        count++;
+        if (arg->value->kind != E_STRUCT_INIT) {
+            cm1e_st_report(st, arg->place, "the inputs of FB_Init stand in parentheses, once for each element: "
+                           "(number := 1), (number := 2)");
+            return;
+        }
+        const var_t element = cm1e_st_init_element(var, arg);
+        check_given(st, &element);
+    }
+    if (count != elements)
+        cm1e_st_report(st, var->init_elements->place, "the array has %llu elements, and the inputs of FB_Init are given "
+                       "for %llu", (unsigned long long)elements, (unsigned long long)count);
+}
+
+void cm1e_st_check_init_args(st_t *st, var_t *var)
+{
+    check_given(st, var);
     const type_t *element = var->type;
     while (element->kind == T_ARRAY)
         element = element->element;
-    if (element != var->type && element->kind == T_BLOCK && cm1e_st_init_takes(element->unit))
-        cm1e_st_report(st, var->place,
-                       "FB_Init of %s needs inputs, which the elements of an array cannot be given: declare each "
-                       "instance by itself", element->name);
+    const bool takes = element->kind == T_BLOCK && cm1e_st_init_takes(element->unit) && var->section != V_IN_OUT;
+    if (takes && var->type->kind == T_ARRAY && element != var->type->element)
+        cm1e_st_report(st, var->place, "FB_Init of %s needs inputs, which an array of arrays cannot be given: give it more "
+                       "dimensions, ARRAY[1..2, 1..3] OF %s", element->name, element->name);
+    else if (takes && var->init_elements)
+        check_elements(st, var);
+    else if (takes && element != var->type)
+        cm1e_st_report(st, var->place, "FB_Init of %s needs inputs for each element: ARRAY[1..2] OF %s[(number := 1), "
+                       "(number := 2)]", element->name, element->name);
+    else if (var->init_elements && element->kind != T_WRONG)
+        cm1e_st_report(st, var->init_elements->place, "%s has no FB_Init with inputs; initial values stand behind :=",
+                       cm1e_st_type_name(element));
 }
 
 const expr_t *cm1e_st_init_arg(const var_t *instance, const var_t *parameter)

@@ -185,9 +185,14 @@ declaration: names address ':' type initial ';' { $$ = cm1e_st_vars(parsing, $1,
         if (parsing->section != V_IN_OUT || $6 > ST_DIMENSIONS)
             cm1e_st_report(ST, @6, "ARRAY[*] is for VAR_IN_OUT, and has at most %d dimensions", ST_DIMENSIONS);
         $$ = cm1e_st_vars(parsing, $1, $2, type, NULL); }
-    | names address ':' array_of dotted init_of_elements initial ';' {
-        cm1e_st_report(ST, @6, "the elements of an array cannot be given inputs of their FB_Init: declare each instance "
-                       "by itself, as in first : %s(number := 1);", $5);
+    | names address ':' array_of dotted '[' element_inits ']' initial ';' { /* FB_Init of each element */
+        $4->element = cm1e_st_type_node(ST, T_NONE, @5, $5);
+        $$ = cm1e_st_vars(parsing, $1, $2, $4, $9);
+        for (var_t *var = $1.first; var; var = var->next)
+            var->init_elements = $7.first; }
+    | names address ':' array_of dotted '(' member_inits ')' initial ';' {
+        cm1e_st_report(ST, @6, "each element of an array has the inputs of its own FB_Init: ARRAY[1..2] OF %s[(%s := ...), "
+                       "(%s := ...)]", $5, $7.first->name, $7.first->name);
         $$ = cm1e_st_vars(parsing, $1, $2, cm1e_st_type_node(ST, T_WRONG, @4, NULL), NULL); }
     | names address ':' type NAME ';' { $$ = cm1e_st_vars(parsing, $1, $2, $4, NULL);
         cm1e_st_edge(parsing, @5, $5, $1); }
@@ -196,7 +201,6 @@ declaration: names address ':' type initial ';' { $$ = cm1e_st_vars(parsing, $1,
         for (var_t *var = $1.first; var; var = var->next)
             var->init_args = $6.first; }
     | error ';' { $$ = (vars_t){0}; };
-init_of_elements: '(' member_inits ')' | '[' element_inits ']';
 stars: '*' { $$ = 1; } | stars ',' '*' { $$ = $1 + 1; };
 names: NAME { var_t *var = cm1e_st_var_name(parsing, @1, $1); $$ = (vars_t){var, var}; }
     | names ',' NAME { var_t *var = cm1e_st_var_name(parsing, @3, $3); $$ = $1; ST_APPEND($$, var); };

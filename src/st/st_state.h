@@ -241,6 +241,8 @@ bool cm1e_st_has_init(const unit_t *unit);
 bool cm1e_st_init_takes(const unit_t *unit);
 /** The inputs of FB_Init in the declaration of an instance. */
 void cm1e_st_check_init_args(st_t *st, var_t *var);
+/** An element of an array, with its inputs of `init_elements`. */
+var_t cm1e_st_init_element(const var_t *array, const arg_t *inputs);
 /** The value of an input; NULL: the declaration gives none. */
 const expr_t *cm1e_st_init_arg(const var_t *instance, const var_t *parameter);
 

@@ -216,6 +216,7 @@ struct var {
     int memory_bit;      /**< of a BOOL AT %MX: 1 = bit 0; else 0 */
     var_t *memory_byte;  /**< the byte that has this bit */
     arg_t *init_args;    /**< fb : FB_X(a := 1): for its FB_Init */
+    arg_t *init_elements; /**< fbs : ARRAY[1..2] OF FB_X[(a := 1), (a := 2)]: a list for each element */
     place_t place;
     constant_t value;    /**< of a constant */
     int state;           /**< of its value: 0 new, 1 being computed, 2 known */

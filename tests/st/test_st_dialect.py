@@ -172,6 +172,17 @@ FUNCTION_BLOCK FB_A VAR_INPUT q : INT; END_VAR VAR_OUTPUT n : INT; END_VAR
 PROGRAM Main VAR a : ST_B; b : ST_B := (z := 2, mode := Idle); n : INT; END_VAR
   n := a.y + b.z; IF a.mode = Run AND b.mode = Idle THEN b.mode := a.mode; END_IF END_PROGRAM
 """, 1, {"Main.n": 10, "Main.b.mode": 1, "Main.a.f.n": 3, "Main.a.g.n": 5, "Main.a.h.q": 7, "Main.b.x": 4}),
+    ("elements", """
+FUNCTION_BLOCK FB_A VAR_INPUT q : INT; END_VAR VAR_OUTPUT n : INT; s : STRING; END_VAR
+  METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; k : INT; name : STRING; END_VAR n := n + k; s := name; END_METHOD END_FUNCTION_BLOCK
+FUNCTION_BLOCK FB_B EXTENDS FB_A METHOD FB_Init : BOOL VAR_INPUT bInitRetains, bInCopyCode : BOOL; m : INT; END_VAR n := n * m; END_METHOD END_FUNCTION_BLOCK
+FUNCTION_BLOCK FB_C VAR_STAT all : ARRAY[0..1] OF FB_A[(k := 8, name := 'x'), (k := 9, name := 'y')]; END_VAR VAR_OUTPUT n : INT; END_VAR n := all[1].n; END_FUNCTION_BLOCK
+TYPE ST : STRUCT f : ARRAY[1..2] OF FB_A[(k := 5, name := 'e'), (k := 6, name := 'f')]; END_STRUCT; END_TYPE
+VAR_GLOBAL CONSTANT TEN : INT := 10; END_VAR
+PROGRAM Main VAR a : ARRAY[0..1, 1..2] OF FB_A[(k := 1, name := 'a'), (k := 2, name := 'b'), (name := 'c', k := 3), (k := TEN, name := 'd')] :=
+  [(q := 7), 3((q := 8))]; b : ARRAY[1..1] OF FB_B[(k := 3, m := 4, name := '')]; c : FB_C; e : ST; END_VAR a[1, 2](); c(); END_PROGRAM
+""", 1, {"Main.a[0,1].n": 1, "Main.a[0,2].n": 2, "Main.a[1,1].n": 3, "Main.a[1,2].n": 10, "Main.a[1,1].s": b"c", "Main.a[0,1].q": 7,
+         "Main.a[1,2].q": 8, "Main.b[1].n": 12, "Main.c.n": 9, "Main.e.f[2].n": 6, "Main.e.f[2].s": b"f"}),
     # Inputs with an initial value may be left out at the end.
     ("left_out", """
 FUNCTION F : INT VAR_INPUT a : INT := 3; b : INT := 4; END_VAR F := a * 10 + b; END_FUNCTION
