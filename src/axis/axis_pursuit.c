@@ -9,8 +9,7 @@
  * see another velocity of their master, catch up. An axis of a group comes to rest, and goes back to its path, which
  * waits.
  *
- * A slave does so after a pause only: while frames are lost it stays with its master. A motion made of several, and a
- * path, go on after one or two cycles instead.
+ * A slave, a motion made of several, and a path go on after one or two cycles instead.
  *
  * Stops and ramps of errors are such motions too. Where the bus is lost, no set-point follows: the drive has braked by
  * itself, and the motor is held near where it comes to rest.
@@ -163,15 +162,13 @@ static double cycles_of_braking(const cm1e_axis_t *axis)
     return silent + fmax(0.0, earlier) / 3.0;
 }
 
-/* A slave stays with its master. What is made of several motions would end after a short silence, which it rides
+/* A slave stays with its master, and what is made of several motions would end, after a short silence, which both ride
  * out. */
 static bool goes_on(const cm1e_axis_t *axis)
 {
-    if (axis_follows(axis))
-        return true;
     if (axis_led(axis))
         return axis->leader->begins_anew && !axis->leader->begins_anew(axis->leader->context);
-    return (axis->setpoint.source->is_composite || axis->superimposed.id) &&
+    return (axis_follows(axis) || axis->setpoint.source->is_composite || axis->superimposed.id) &&
            axis->silence.silent_before <= CM1E_AXIS_RIDDEN_OUT_CYCLES;
 }
 
