@@ -145,9 +145,10 @@ static void check_external(st_t *st, var_t *var)
     var->type = cm1e_st_resolve(st, var->type);
     if (var->global) /* VAR_STAT, VAR_INST */
         return;
-    if (var->initial || var->address)
-        cm1e_st_report(st, var->place, "VAR_EXTERNAL only names a global variable: its %s stands in VAR_GLOBAL",
-                       var->initial ? "initial value" : "address");
+    if (var->initial || var->address || var->init_args || var->init_elements)
+        cm1e_st_report(st, var->place, "VAR_EXTERNAL only names a global variable: its %s in VAR_GLOBAL",
+                       var->initial ? "initial value stands" : var->address ? "address stands"
+                                                                            : "inputs of FB_Init stand");
     var->global = cm1e_st_map_get(st->globals, var->name);
     if (!var->global) {
         cm1e_st_report(st, var->place, "there is no global variable \"%s\" (VAR_GLOBAL)%s", var->name,

@@ -117,6 +117,11 @@ static void check_elements(st_t *st, const var_t *var)
 
 void cm1e_st_check_init_args(st_t *st, var_t *var)
 {
+    if (var->section == V_IN_OUT && (var->init_args || var->init_elements)) {
+        cm1e_st_report(st, var->place, "a VAR_IN_OUT is an instance of the caller, which has given it the inputs of "
+                       "its FB_Init");
+        return;
+    }
     check_given(st, var);
     const type_t *element = var->type;
     while (element->kind == T_ARRAY)
