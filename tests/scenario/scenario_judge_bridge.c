@@ -14,7 +14,7 @@ bool moves_by_itself(const machine_axis_t *axis)
 /* Counts/s. The library takes a motor for one at rest whose positions change by no more than 3 counts within 20 ms. One that
  * breaks loose from its friction, and creeps to its target, gets so fast meanwhile. */
 #define CREEPING 500.0
-enum { LATE_CYCLES = 4000, TRANSFER_CYCLES = 60 }; /* of a write */
+enum { LATE_CYCLES = 4000, TRANSFER_CYCLES = 60 /* of a write */, SOON = 5 };
 
 /** Rules of the bridge's guide (cm1e/sim.h). An output may be written when the motor has lost its power; a motor that still
  *  turns gets a target that goes with it; one that stands behind its set-point by more than position_lag gets its own
@@ -23,6 +23,9 @@ enum { LATE_CYCLES = 4000, TRANSFER_CYCLES = 60 }; /* of a write */
 static void judge_rules(run_t *run, machine_axis_t *axis)
 {
     const unsigned turns = is_caught(run, axis) ? CM1E_SIM_STEP_AT_START : 0u;
+    /* It is caught where it is, if the host stood still as it began to follow its targets (docs/SAFETY.md). */
+    const bool far = is_caught(run, axis) && axis->info.state == CM1E_AXIS_DISABLED && axis->seen.stalled < SOON;
+    const unsigned leaves = far ? CM1E_SIM_STEP_IN_CYCLE : 0u;
     const unsigned lags = axis->info.error == CM1E_ERROR_AXIS_LAG ? CM1E_SIM_STEP_IN_CYCLE : 0u;
     const unsigned insists = program_has(run->scenario, axis->number, mode_switches) ? CM1E_SIM_MODE_NO_WAY : 0u;
     const unsigned fails = fault_explains(run, axis, false) ? CM1E_SIM_MODE_IN_ERROR : 0u;
@@ -31,7 +34,7 @@ static void judge_rules(run_t *run, machine_axis_t *axis)
     const bool shoved = run->cycle - axis->seen.shoved_at < on_its_way;
     const bool creeps = fabs(axis->probe.velocity_counts_per_s) < CREEPING;
     const unsigned stands = creeps || shoved ? axis->probe.broken_rules & CM1E_SIM_MODE_IN_MOTION : 0u; /* in this cycle */
-    axis->seen.excused |= CM1E_SIM_OUTPUT_IN_VAIN | turns | lags | insists | fails | stands;
+    axis->seen.excused |= CM1E_SIM_OUTPUT_IN_VAIN | turns | leaves | lags | insists | fails | stands;
     if ((axis->probe.broken_rules & ~axis->seen.excused) != 0)
         scenario_fail(run, "rules", "%s (%s): rules of the bridge's guide are broken: 0x%03X", axis->name,
                       cm1e_axis_state_name(axis->info.state), axis->probe.broken_rules);
