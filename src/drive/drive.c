@@ -266,18 +266,13 @@ static uint16_t no_torque_word(const cm1e_drive_t *drive)
     return ends_quick_stop(drive) ? cm1e_fsa_commands[COMMAND_DISABLE_VOLTAGE].controlword : words->no_torque;
 }
 
-/* Whether the drive may follow its targets, and not show it yet: the last frame told it to. */
-static bool may_follow(const cm1e_drive_t *drive)
-{
-    const uint16_t enables = cm1e_fsa_commands[COMMAND_ENABLE_OPERATION].controlword;
-    return (drive->ordinary.controlword & enables) == enables;
-}
-
 /* The torque comes with a target where the motor is, so not with one that was made cycles ago; but what was commanded
  * before stays. */
 static bool is_too_late(const cm1e_drive_t *drive, cm1e_fsa_command_t command)
 {
-    return drive->target.late && command == COMMAND_ENABLE_OPERATION && !may_follow(drive);
+    const uint16_t enables = cm1e_fsa_commands[COMMAND_ENABLE_OPERATION].controlword;
+    return drive->target.late && command == COMMAND_ENABLE_OPERATION &&
+           (drive->ordinary.controlword & enables) != enables;
 }
 
 /* Sends one command per cycle, chosen from the state that the drive shows (UG 6.1.2, BR 6.1.2). */
@@ -341,18 +336,6 @@ static int32_t next_position(const cm1e_drive_t *drive)
     return (int32_t)((uint32_t)last + (uint32_t)slewed(0, (int32_t)cm1e_drive_way_between(last, wanted), step));
 }
 
-/* A motor that turned on in a pause, as it got its torque, may be far from the last target. The next one goes there in
- * no larger step than that of a motor. */
-static int32_t within_reach(const cm1e_drive_t *drive, int32_t position)
-{
-    if (!may_follow(drive) || drive->mode.wanted->mode != CM1E_MODE_CSP)
-        return position;
-    const int64_t peak = drive->range.velocity_believed / 2; /* counts/s */
-    const int64_t most = peak * cm1e_bus_configuration(drive->bus)->cycle_time_ns / S_IN_NS;
-    const int32_t last = drive->target.position, way = (int32_t)cm1e_drive_way_between(last, position);
-    return (int32_t)((uint32_t)last + (uint32_t)slewed(0, way, (int32_t)most));
-}
-
 /* CSV. After lost frames the velocity changes in limited steps: a position loop that was without inputs, or the frames
  * that were lost, cause no jump. */
 static int32_t next_velocity(cm1e_drive_t *drive)
@@ -405,8 +388,6 @@ void cm1e_drive_write(cm1e_drive_t *drive)
         position = held_before || !drive->answered ? next_position(drive) : command->target_position;
     else if (follow && drive->mode.holds)
         cm1e_drive_fail(drive, CM1E_ERROR_AXIS_POSITION_RANGE); /* the last target holds until the torque goes */
-    if (!held_before)
-        position = within_reach(drive, position);
     const uint16_t word = controlword(drive, pass) | (drive->mode.marked ? signals(drive) : 0);
     cm1e_drive_encode(drive, word, position, follow ? next_velocity(drive) : 0);
     drive->target.late = false;
