@@ -111,8 +111,8 @@ static void check_elements(st_t *st, const var_t *var)
         check_given(st, &element);
     }
     if (count != elements)
-        cm1e_st_report(st, var->init_elements->place, "the array has %llu elements, and the inputs of FB_Init are given "
-                       "for %llu", (unsigned long long)elements, (unsigned long long)count);
+        cm1e_st_report(st, var->init_elements->place, "the array has %llu elements, and the inputs of FB_Init are "
+                       "given for %llu", (unsigned long long)elements, (unsigned long long)count);
 }
 
 void cm1e_st_check_init_args(st_t *st, var_t *var)
@@ -128,8 +128,8 @@ void cm1e_st_check_init_args(st_t *st, var_t *var)
         element = element->element;
     const bool takes = element->kind == T_BLOCK && cm1e_st_init_takes(element->unit) && var->section != V_IN_OUT;
     if (takes && var->type->kind == T_ARRAY && element != var->type->element)
-        cm1e_st_report(st, var->place, "FB_Init of %s needs inputs, which an array of arrays cannot be given: give it more "
-                       "dimensions, ARRAY[1..2, 1..3] OF %s", element->name, element->name);
+        cm1e_st_report(st, var->place, "FB_Init of %s needs inputs, which an array of arrays cannot be given: give it "
+                       "more dimensions, ARRAY[1..2, 1..3] OF %s", element->name, element->name);
     else if (takes && var->init_elements)
         check_elements(st, var);
     else if (takes && element != var->type)

@@ -48,6 +48,9 @@ WRITES = [
 ]
 # Words, status, and what is said.
 CASES = [
+    (["scan", "eth0"], WRONG_USE, '"eth0" is too many: a network is named as in -i eth1'),
+    (["init", "eth0"], WRONG_USE, '"eth0" is too many: a network is named as in -i eth1'),
+    (["run", "machine.st"], WRONG_USE, "cm1e st build machine.st"),
     (["scan", "-i", "absent0"], FAILED, "absent0"), (["status", "--attach", "1"], FAILED, "Process 1 has no control socket"),
     (["sdo", "read", "99", "0x1018:1", "-i", "sim"], FAILED, "there is no slave 99"),
     (["sdo", "read", "0", "0x1018:1", "-i", "sim"], WRONG_USE, "1 ... 512"),
