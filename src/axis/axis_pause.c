@@ -66,10 +66,12 @@ static cm1e_error_t move_anew(cm1e_axis_t *axis)
 {
     if (axis->commands.active && kind_row(axis->commands.kind)->plan == PLAN_TABLE)
         return end_table(axis);
+    const bool relieves = axis->state == CM1E_AXIS_STOPPING && axis->homing_step.after_stop;
+    if (relieves || (axis->commands.active && axis->commands.kind == CM1E_COMMAND_HOMING_STEP))
+        return axis->homing_hooks->step_anew(axis);
     if (!axis->commands.active || axis->commands.kind == CM1E_COMMAND_STOP)
         return stop_anew(axis);
-    return axis->commands.kind == CM1E_COMMAND_HOMING_STEP ? axis->homing_hooks->step_anew(axis)
-                                                           : cm1e_axis_replan_anew(axis);
+    return cm1e_axis_replan_anew(axis);
 }
 
 static void profile_anew(cm1e_axis_t *axis)

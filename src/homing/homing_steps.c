@@ -632,7 +632,7 @@ bool cm1e_homing_step_ended(cm1e_axis_t *axis)
     return true;
 }
 
-/* Continues a step after a pause: with the velocity of its search, or to the end of MC_FinishHoming. */
+/* Continues a step after a pause: with the velocity of its search or relief, or to the end of MC_FinishHoming. */
 cm1e_error_t cm1e_homing_step_anew(cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->homing->stepping;
@@ -640,8 +640,9 @@ cm1e_error_t cm1e_homing_step_anew(cm1e_axis_t *axis)
     const double way = cm1e_position_minus(axis->setpoint.target, axis->setpoint.position) / axis->position.scale;
     const double end = axis->setpoint.profile.end.velocity;
     cm1e_profile_t profile;
-    const bool planned = s->finishing ? cm1e_profile_to_position(&profile, &now, way, &s->limits) == CM1E_OK
-                                      : cm1e_profile_to_velocity(&profile, &now, end, &s->limits) == CM1E_OK;
+    const bool to_end = s->finishing && s->phase != STEPPING_RELIEVE;
+    const bool planned = to_end ? cm1e_profile_to_position(&profile, &now, way, &s->limits) == CM1E_OK
+                                : cm1e_profile_to_velocity(&profile, &now, end, &s->limits) == CM1E_OK;
     if (!planned)
         return CM1E_ERROR_AXIS_POSITION_RANGE;
     run(axis, &profile);
