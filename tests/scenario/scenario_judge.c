@@ -13,6 +13,7 @@
 #define SERVO_SPEED_COUNTS 300.0  /* and counts/s: targets are whole counts */
 #define COARSE_COUNTS 1000.0      /* counts/s: target velocities before firmware 1.3.3 */
 #define SERVO_GAIN 1.15           /* of the maximum acceleration, within GAIN_MS */
+#define CROSSING_RAMP_S 0.02     /* docs/FUNCTION-BLOCKS.md: until a crossing of backlash has its velocity */
 #define SERVO_BANDWIDTH 500.0     /* rad/s, of its position loop */
 #define STALL_OVERSHOOT 0.05      /* docs/SAFETY.md: 5 % above the earlier speed after a pause of the host */
 #define SWING_OVERSHOOT 0.11      /* a heavy load that the drive alone swings in a long pause (docs/SAFETY.md), or whose
@@ -94,6 +95,11 @@ static double peak_torque(const axis_spec_t *spec) { return spec->kind == AXIS_C
 static double revolution(const axis_spec_t *spec) { return spec->kind == AXIS_CIA402 ? 131072 : 50000; }
 
 double crossing_speed(const axis_spec_t *spec) { return spec->backlash > 0 ? spec->backlash_velocity : 0; }
+/** Counts/s2; it is added to that of the motion, as its speed is. */
+static double crossing_acceleration(const axis_spec_t *spec)
+{
+    return fmin(crossing_speed(spec) / CROSSING_RAMP_S, fmin(spec->acceleration, spec->deceleration));
+}
 
 static bool by_velocity(const axis_spec_t *spec) { return spec->kind == AXIS_CM1E && spec->mapping == MAPPING_CSV; }
 
@@ -237,8 +243,8 @@ static void judge_speed(run_t *run, machine_axis_t *axis)
     const double speed = fabs(axis->probe.velocity_counts_per_s);
     if (is_pushed(run, axis) || recoils(run, axis))
         return;
-    const double servo = SERVO_FILTER_S * fmax(spec->acceleration, spec->deceleration) + SERVO_SPEED_COUNTS +
-                         (by_velocity(spec) ? COARSE_COUNTS : 0);
+    const double acceleration = fmax(spec->acceleration, spec->deceleration) + crossing_acceleration(spec);
+    const double servo = SERVO_FILTER_S * acceleration + SERVO_SPEED_COUNTS + (by_velocity(spec) ? COARSE_COUNTS : 0);
     const double own = is_homing(run, axis) && axis->seen.by_drive ? HOMING_SPEED : 0, over = speed / (fmax(spec->velocity, own) + crossing_speed(spec)) - 1;
     const allowance_t highest = highest_speed(run, axis);
     double *over_speed = &run->outcome->over_speed[highest.reason];
