@@ -95,8 +95,8 @@ static double peak_torque(const axis_spec_t *spec) { return spec->kind == AXIS_C
 static double revolution(const axis_spec_t *spec) { return spec->kind == AXIS_CIA402 ? 131072 : 50000; }
 
 double crossing_speed(const axis_spec_t *spec) { return spec->backlash > 0 ? spec->backlash_velocity : 0; }
-/** Counts/s2; it is added to that of the motion, as its speed is. */
-static double crossing_acceleration(const axis_spec_t *spec)
+
+double crossing_acceleration(const axis_spec_t *spec)
 {
     return fmin(crossing_speed(spec) / CROSSING_RAMP_S, fmin(spec->acceleration, spec->deceleration));
 }

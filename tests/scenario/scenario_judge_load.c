@@ -3,8 +3,6 @@
 
 #include "scenario_private.h"
 
-#define RAMP_S 0.02 /* the compensation reaches its velocity in this time (docs/FUNCTION-BLOCKS.md) */
-
 /** Whether the crossing that the last reversal of the set velocity began is not over yet. Without torque the axis looks
  *  where its load is. */
 static bool crosses(const run_t *run, machine_axis_t *axis)
@@ -18,8 +16,7 @@ static bool crosses(const run_t *run, machine_axis_t *axis)
     seen->heading = heading;
     if (spec->backlash <= 0)
         return false;
-    const double acceleration = fmin(speed / RAMP_S, fmin(spec->acceleration, spec->deceleration));
-    const double time_s = spec->backlash / speed + speed / acceleration;
+    const double time_s = spec->backlash / speed + speed / crossing_acceleration(spec);
     return (run->cycle - seen->turned_at) * run->scenario->cycle_us * 1e-6 < time_s;
 }
 

@@ -212,6 +212,8 @@ void wire_fall_back(run_t *run, int network, uint32_t position);
 
 /** Counts/s, at which a motor crosses its gear's backlash, on top of its motion. */
 double crossing_speed(const axis_spec_t *spec);
+/** Counts/s2; it is added to that of the motion, as its speed is. */
+double crossing_acceleration(const axis_spec_t *spec);
 void judge_begin(run_t *run);
 /** Before the program: what the machine shows now. */
 void judge_look(run_t *run);
