@@ -188,6 +188,22 @@ static void test_a_lowered_maximum_does_not_disturb_a_superimposed_motion(void)
         }
 }
 
+/* The maximum velocity is lowered below VelocityDiff before the superimposed motion has come to that. */
+static void test_a_lowered_maximum_velocity_holds_for_a_superimposed_motion(void)
+{
+    on_top_t on_top = {.distance = 1.25, .velocity = 3.0};
+    make_two();
+    const cm1e_command_id_t gear = axes_gear_in(SLAVE, MASTER, 1, 1);
+    axes_wait_reached(SLAVE, gear, 100);
+    const double before = ahead();
+    begin_on_top(&on_top);
+    watch(&on_top, gear, 10);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_write_parameter(axes_axis(SLAVE), CM1E_PARAMETER_MAX_VELOCITY_APPL, 2.0));
+    on_top.velocity = 2.0;
+    wait_for_end(&on_top, gear);
+    TEST_ASSERT_DOUBLE_WITHIN(1e-9, before + on_top.distance, ahead());
+}
+
 /* The jerk of the master alone is more than the slave has, by the master's own limits or by the ratio. */
 static void test_a_master_with_more_jerk_than_the_slave_is_an_error_as_ever(void)
 {
@@ -221,5 +237,6 @@ int main(void)
     RUN_TEST(test_random_changes_of_the_master);
     RUN_TEST(test_random_changes_where_the_deceleration_differs);
     RUN_TEST(test_a_lowered_maximum_does_not_disturb_a_superimposed_motion);
+    RUN_TEST(test_a_lowered_maximum_velocity_holds_for_a_superimposed_motion);
     return UNITY_END();
 }
