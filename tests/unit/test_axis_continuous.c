@@ -150,6 +150,34 @@ static cm1e_error_t refusal(double position, double velocity, double end)
     return cm1e_axis_start(axis, &command, &id);
 }
 
+/* It turns back behind its position: it is entered no faster than it can stand there, in metres too. */
+static void test_a_short_way_to_an_end_velocity_back_is_entered_slowly(void)
+{
+    for (double way = 0.02; way < 0.5; way += 0.02) {
+        bench_end();
+        fake_bus_init(&bus, CM1E_MAPPING_DYNAMIC, CM1E_PDO_ORDER_UG_4_4, CM1E_FIRMWARE_1_3_5);
+        cm1e_axis_config_t *config = &bus.config.axes[0];
+        config->counts_per_unit *= 1000.0;
+        config->max_velocity = 0.02;
+        config->max_acceleration = 0.1;
+        config->max_deceleration = 0.08;
+        config->max_jerk = 2.0;
+        bench_create();
+        bench_enable();
+        watch_begin();
+        bench_move_to(5.0e-3, 8.0e-3);
+        const cm1e_command_id_t id = bench_start_command(&(cm1e_axis_command_t){
+            .kind = CM1E_COMMAND_MOVE_CONTINUOUS_ABSOLUTE, .position = (5.0 + way) * 1e-3, .velocity = 8.0e-3,
+            .end_velocity = -2.0e-3, .buffer_mode = mcBlendingHigh});
+        double farthest = 0.0;
+        for (int n = 0; n < 20000 && !cm1e_axis_command_status(axis, id).reached; n++) {
+            watch_cycles(1);
+            farthest = fmax(farthest, bench_info().set_position);
+        }
+        TEST_ASSERT_TRUE(farthest <= (5.0 + way + 0.065) * 1e-3);
+    }
+}
+
 static void test_limits(void)
 {
     begin_with_limits(-10.0, 10.0);
@@ -177,6 +205,7 @@ int main(void)
     RUN_TEST(test_relative_counts_from_the_set_position);
     RUN_TEST(test_the_next_one_begins_at_in_end_velocity);
     RUN_TEST(test_end_velocity_zero_is_a_stop_there);
+    RUN_TEST(test_a_short_way_to_an_end_velocity_back_is_entered_slowly);
     RUN_TEST(test_limits);
     return UNITY_END();
 }
