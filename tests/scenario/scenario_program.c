@@ -247,14 +247,15 @@ static bool is_down(run_t *run, machine_axis_t *axis)
 {
     axis->power.Enable = FALSE;
     const cm1e_axis_state_t state = axis->info.state;
-    if (moves_by_itself(axis) && axis->probe.torque_on) /* MC_Power ends that */
+    /* MC_Power ends a motion of the motor by itself, also where its slave has left Operational and shows no mode. */
+    const bool elsewhere = axis->channel > 0 && axis->info.mode != CM1E_MODE_CSP;
+    if (axis->seen.by_itself && elsewhere && axis->probe.torque_on)
         return true;
     /* A motor behind a bridge may hold its position by itself when it gets its supply (docs/SAFETY.md). */
     const bool rests = axis->seen.rest_cycles >= cycles_of(run, REST_MS);
     const bool free = !axis->probe.torque_on || (axis->channel > 0 && rests);
     /* Enabled before a stop, it is braked into that. The way back to csp needs a motor at rest (docs/SAFETY.md). */
-    const bool switches = axis->channel > 0 && axis->info.mode != CM1E_MODE_CSP;
-    const bool coasts = (axis->spec->stops != 0 || switches) && fabs(axis->probe.velocity_counts_per_s) > TURNING;
+    const bool coasts = (axis->spec->stops != 0 || elsewhere) && fabs(axis->probe.velocity_counts_per_s) > TURNING;
     const bool pushed = run->cycle <= axis->seen.pushed_until; /* by a load, and it has not come to rest since */
     return (state == CM1E_AXIS_DISABLED || state == CM1E_AXIS_ERROR_STOP) && free && !coasts && !pushed;
 }
