@@ -35,7 +35,7 @@ void cm1e_axis_become_free(cm1e_axis_t *axis)
     axis->power.energized = false;
     cm1e_axis_power_unsettle(axis);
     axis->homing_step.pushing = axis->homing_step.after_stop = false;
-    axis->power.free_ns = axis->now_ns;
+    axis->power.free_ns = axis->power.brake_until_ns = axis->now_ns;
     cm1e_axis_set_to_actual(axis);
 }
 

@@ -531,6 +531,26 @@ static void test_where_every_cycle_is_late_no_drive_gets_its_torque(void)
     bench_told("every cycle was too late to command it");
 }
 
+/** A pause took the set velocity away, and the torque was to stay until the motor has had time to brake. A drive that
+ *  ends it meanwhile ends that time too: a motor that rests does not wait for it when it gets its torque again. */
+static void test_the_time_to_brake_ends_with_the_torque(void)
+{
+    bench_enable();
+    bench_move_velocity(10.0);
+    bench_cycles(400);
+    bench_start_command(&(cm1e_axis_command_t){.kind = CM1E_COMMAND_STOP});
+    bench_inputs();
+    cm1e_axis_after_pause(axis, 8 * cycle_ns);
+    bench_outputs();
+    bench_cycles(10);
+    fake_bus_fault(&bus, 0x2310);
+    bench_cycles(5);
+    TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_FAULT, bench_info().error);
+    TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_axis_reset(axis));
+    bench_cycles(30);
+    TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -551,6 +571,7 @@ int main(void)
     RUN_TEST(test_a_motion_by_velocity_goes_on_evenly_after_a_silence);
     RUN_TEST(test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit);
     RUN_TEST(test_motor_ahead_after_a_pause_is_judged_by_the_speed_that_it_had);
+    RUN_TEST(test_the_time_to_brake_ends_with_the_torque);
     RUN_TEST(test_torque_stays_while_the_motor_turns_for_two_seconds_at_most);
     RUN_TEST(test_bus_trouble_while_disabled_is_no_error_until_enable);
     RUN_TEST(test_a_slave_that_was_away_is_no_longer_homed);
