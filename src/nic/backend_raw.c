@@ -34,9 +34,15 @@ typedef struct way {
 typedef struct raw {
     end_t ends[CM1E_NIC_PORTS];
     struct pollfd fds[CM1E_NIC_PORTS];
-    pthread_t opener;       /**< the thread whose timer slack was changed ... */
-    unsigned long slack_ns; /**< ... from this; 0: it was not */
+    bool wakes_opener;      /**< the timer slack of this thread was changed */
+    pthread_t opener;
 } raw_t;
+
+/** Of this thread: the interfaces that need it awake in time, and its timer slack without them. */
+static _Thread_local struct {
+    unsigned interfaces;
+    int slack_ns;
+} awake;
 
 /* ---- the ways ---------------------------------------------------------------------------------------------------- */
 
@@ -87,14 +93,32 @@ static const way_t ways[CM1E_WAYS] = {
 
 static bool raw_matches(const char *name) { return name[0] != 0; }
 
+/** A thread without real-time priority is woken up to 50 us late by default; this is the thread that waits. */
+static void wake_in_time(raw_t *raw)
+{
+    raw->wakes_opener = true;
+    raw->opener = pthread_self();
+    if (awake.interfaces++ == 0)
+        awake.slack_ns = prctl(PR_GET_TIMERSLACK, 0UL, 0UL, 0UL, 0UL);
+    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
+}
+
+/** Where the last interface of the thread goes. */
+static void sleep_as_before(const raw_t *raw)
+{
+    if (!raw->wakes_opener || !pthread_equal(raw->opener, pthread_self()) || awake.interfaces == 0)
+        return; /* another thread closes it: only a thread itself has a timer slack */
+    if (--awake.interfaces == 0 && awake.slack_ns > 0)
+        prctl(PR_SET_TIMERSLACK, (unsigned long)awake.slack_ns, 0UL, 0UL, 0UL);
+}
+
 static void raw_close(cm1e_nic_link_t *link)
 {
     raw_t *raw = link->state;
     for (int i = 0; i < link->ports; i++)
         if (raw->ends[i].way)
             raw->ends[i].way->close(&raw->ends[i]);
-    if (raw->slack_ns > 0 && pthread_equal(raw->opener, pthread_self()))
-        prctl(PR_SET_TIMERSLACK, raw->slack_ns, 0UL, 0UL, 0UL);
+    sleep_as_before(raw);
     free(raw);
 }
 
@@ -118,16 +142,6 @@ static cm1e_error_t open_end(end_t *end, struct pollfd *fd, const char *name, cm
     const cm1e_error_t error = ways[way].open(end, &fd->fd, own_name, diag);
     end->way = error == CM1E_OK ? &ways[way] : NULL;
     return error;
-}
-
-/** A thread without real-time priority is woken up to 50 us late by default; this is the thread that waits. Of several
- *  interfaces the first one restores it. */
-static void wake_in_time(raw_t *raw)
-{
-    const int slack_ns = prctl(PR_GET_TIMERSLACK, 0UL, 0UL, 0UL, 0UL);
-    raw->opener = pthread_self();
-    raw->slack_ns = slack_ns > 1 ? (unsigned long)slack_ns : 0;
-    prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL);
 }
 
 static cm1e_error_t raw_open(cm1e_nic_link_t *link, const cm1e_bus_config_t *config, cm1e_diag_t *diag)
