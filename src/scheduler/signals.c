@@ -54,12 +54,14 @@ void cm1e_signals_attach(cm1e_scheduler_t *scheduler)
 
 void cm1e_signals_detach(const cm1e_scheduler_t *scheduler)
 {
-    if (atomic_load(&attached) != scheduler)
-        return;
-    for (int i = 0; i < SIGNALS; i++)
-        if (taken[i])
-            sigaction(signals[i].number, &before[i], NULL);
-    atomic_store(&attached, NULL);
-    while (atomic_load(&handlers) > 0) /* one that began before has the scheduler; its thread may need our processor */
+    if (atomic_load(&attached) == scheduler) {
+        for (int i = 0; i < SIGNALS; i++)
+            if (taken[i])
+                sigaction(signals[i].number, &before[i], NULL);
+        atomic_store(&attached, NULL);
+    }
+    /* One that began before has the scheduler, also where another one has replaced it since; its thread may need our
+     * processor. */
+    while (atomic_load(&handlers) > 0)
         nanosleep(&(struct timespec){.tv_nsec = 100000}, NULL);
 }

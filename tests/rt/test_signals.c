@@ -235,25 +235,32 @@ static void *be_signalled(void *context)
     return NULL;
 }
 
+/** _i == 1: another scheduler has replaced it meanwhile. */
 START_TEST(test_a_scheduler_lives_until_the_handler_of_another_thread_has_ended)
 {
     cm1e_bus_config_t config;
-    cm1e_bus_t *bus;
-    cm1e_scheduler_t *scheduler;
+    cm1e_bus_t *buses[2];
+    cm1e_scheduler_t *schedulers[2];
     pthread_t thread;
     cm1e_bus_config_init(&config, "sim", 1);
-    ck_assert_int_eq(cm1e_bus_open(&bus, &config, NULL), CM1E_OK);
-    ck_assert_int_eq(cm1e_bus_start(bus, NULL), CM1E_OK);
-    ck_assert_int_eq(cm1e_scheduler_create(&scheduler, bus, NULL, NULL), CM1E_OK);
-    cm1e_scheduler_stop_on_signals(scheduler);
+    for (int i = 0; i < 2; i++) {
+        ck_assert_int_eq(cm1e_bus_open(&buses[i], &config, NULL), CM1E_OK);
+        ck_assert_int_eq(cm1e_bus_start(buses[i], NULL), CM1E_OK);
+        ck_assert_int_eq(cm1e_scheduler_create(&schedulers[i], buses[i], NULL, NULL), CM1E_OK);
+    }
+    cm1e_scheduler_stop_on_signals(schedulers[0]);
     atomic_store(&is_slow, true);
     ck_assert_int_eq(pthread_create(&thread, NULL, be_signalled, NULL), 0);
     while (!atomic_load(&has_begun))
         sleep_ms(1);
-    cm1e_scheduler_destroy(scheduler);
+    if (_i == 1)
+        cm1e_scheduler_stop_on_signals(schedulers[1]);
+    cm1e_scheduler_destroy(schedulers[0]);
     ck_assert(atomic_load(&has_ended));
     pthread_join(thread, NULL);
-    cm1e_bus_close(bus);
+    cm1e_scheduler_destroy(schedulers[1]);
+    for (int i = 0; i < 2; i++)
+        cm1e_bus_close(buses[i]);
     cm1e_bus_config_free(&config);
 }
 END_TEST
@@ -269,7 +276,7 @@ static Suite *make_suite(int part)
     tcase_add_loop_test(all, test_an_ignored_signal_stays_ignored_but_for_those_that_ask_for_an_end, first, end);
     if (part == 0) {
         tcase_add_test(all, test_a_pipe_that_breaks_in_the_cycle_stops_in_order);
-        tcase_add_test(all, test_a_scheduler_lives_until_the_handler_of_another_thread_has_ended);
+        tcase_add_loop_test(all, test_a_scheduler_lives_until_the_handler_of_another_thread_has_ended, 0, 2);
     }
     suite_add_tcase(suite, all);
     return suite;
