@@ -70,14 +70,14 @@ static void set_place_of_offset(cm1e_config_problem_t *problem, const uint8_t *b
     }
 }
 
-/** A line of the file, counted from 1, is indented by a tab: YAML wants spaces, and its parser does not say so. */
-static bool has_tab(const uint8_t *bytes, size_t size, size_t line)
+/** The character of the mark is a tab. YAML wants spaces there, and its parser does not say so. */
+static bool is_tab(const uint8_t *bytes, size_t size, yaml_mark_t mark)
 {
-    size_t at = 0;
-    for (; at < size && line > 1; at++)
-        line -= bytes[at] == '\n';
-    while (at < size && bytes[at] == ' ')
-        at++;
+    size_t at = size >= 3 && memcmp(bytes, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+    for (size_t left = mark.index; left > 0 && at < size; left--)
+        do
+            at++;
+        while (at < size && (bytes[at] & 0xC0) == 0x80); /* the rest of a character */
     return at < size && bytes[at] == '\t';
 }
 
@@ -93,7 +93,7 @@ static cm1e_error_t parser_error(const yaml_parser_t *parser, const uint8_t *byt
     else
         set_place(problem, parser->problem_mark);
     const char *what = parser->problem ? parser->problem : "syntax error";
-    if (has_tab(bytes, size, problem->line))
+    if (parser->error != YAML_READER_ERROR && is_tab(bytes, size, parser->problem_mark))
         snprintf(problem->text, sizeof problem->text, "not YAML: a tab; expected spaces, by which lines are indented");
     else if (parser->context)
         snprintf(problem->text, sizeof problem->text, "not YAML: %s (%s)", what, parser->context);

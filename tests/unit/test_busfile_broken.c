@@ -333,6 +333,8 @@ static const struct {
     {"axes: [[[[[[[[[[[[]]]]]]]]]]]]\n", "1:14", {"nested too deeply"}},
     {"axes:\n\t- name: X\n", "2:1", {"not YAML", "a tab; expected spaces"}},
     {"axes:\n  - name: X\n  \tposition: 1\n", "3:3", {"a tab; expected spaces"}},
+    {"\xEF\xBB\xBF# \xC3\xA4\r\naxes:\n  -\tname: X\n", "3:4", {"a tab; expected spaces"}},
+    {"axes: [\n\t{name: X]\n", "2:10", {"did not find expected ',' or '}'"}}, /* it may stand in brackets */
     {"axes:\n  - name: X\n   position: 1\n", "3:4", {"not YAML", "did not find expected"}},
     {"axes: [\n", "2:1", {"not YAML"}},
     {"axes: [{name: \"X}]\n", "2:1", {"not YAML", "quoted scalar"}},
