@@ -184,6 +184,13 @@ const struct argp argp_scan = {
     "start is not looked at, nor the signals, which depend on it: `cm1e io -b` does the start, and lists them.",
     attach_children, NULL, NULL};
 
+/** Not on standard output: a program that reads the table gets rows only. */
+static void tell_next(const char *interface_name)
+{
+    fflush(stdout);
+    fprintf(stderr, "Next: `cm1e init -i %s -o machine.yaml` writes a bus file of what is there\n", interface_name);
+}
+
 static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *context, uint16_t position)
 {
     const scan_options_t *scan = context;
@@ -202,8 +209,7 @@ static int show(cm1e_bus_t *bus, const cm1e_bus_config_t *config, const void *co
     } else {
         print_table(bus, named, scan->pdos);
         if (named->axis_count + named->slave_count == 0)
-            printf("Next: `cm1e init -i %s -o machine.yaml` writes a bus file of what is there\n",
-                   cm1e_bus_configuration(bus)->interface_name);
+            tell_next(cm1e_bus_configuration(bus)->interface_name);
         tell_simulated(cm1e_bus_configuration(bus));
     }
     /* A bus file states the expected slaves: compare. */

@@ -121,6 +121,12 @@ def signals(path):
             for signal in json.loads(done.stdout)["signals"] if not signal["of_axis"]]
 
 
+def check_scan(_):
+    """What comes next is no row of the table."""
+    done = run("scan", "-i", "sim")
+    expect("Next" not in done.stdout and "Next: `cm1e init -i sim " in done.stderr, f"{done}")
+
+
 def check_slaves(folder):
     """What the file names is there, on that network and on the segment that the simulator makes of the file itself."""
     done, path, text = init(folder, "slaves", SLAVES)
@@ -238,5 +244,5 @@ def in_a_folder(check):
 
 
 real_time.together(*(lambda check=check: in_a_folder(check) for check in (
-    check_motors, check_bridge, check_servo, check_slaves, check_without_motor, check_pdos, check_overwriting,
+    check_motors, check_bridge, check_servo, check_scan, check_slaves, check_without_motor, check_pdos, check_overwriting,
     check_several, check_modules, check_names_of_files, check_refusals)))
