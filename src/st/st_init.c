@@ -71,7 +71,9 @@ static void check_given(st_t *st, const var_t *var)
     const unit_t *unit = var->type->kind == T_BLOCK ? var->type->unit : NULL;
     for (arg_t *arg = var->init_args; arg; arg = arg->next) {
         const var_t *parameter = unit ? parameter_named(unit, arg->name) : NULL;
-        if (parameter)
+        if (given(var, arg->name) != arg)
+            cm1e_st_report(st, arg->place, "\"%s\" is given twice", arg->name);
+        else if (parameter)
             arg->value = cm1e_st_initialiser(st, arg->value, cm1e_st_resolve(st, parameter->type), arg->name);
         else
             cm1e_st_report(st, arg->place,

@@ -291,11 +291,14 @@ SOURCES = [
       for given, place, words in (
           ("A", "1:140", "for each element: ARRAY[1..2] OF A[(number := 1), (number := 2)]"),
           ("A[(n := 1)]", "1:161", "the array has 2 elements, and the inputs of FB_Init are given for 1"),
+          ("A[(n := 1), (n := 2, N := 3)]", "1:180", '"N" is given twice'),
           ("A[(n := 1), (n := 2), (n := 3)]", "1:161", "given for 3"), ("A[(n := 1), (m := 2)]", "1:172", 'no FB_Init with an input "m"'),
           ("A[1, 2]", "1:161", "in parentheses"), ("A[2((n := 1))]", "1:161", "in parentheses"),
           ("A(n := 1)", "1:160", "ARRAY[1..2] OF A[(n := ...), (n := ...)]"), ("B[(n := 1), (n := 1)]", "1:161", "no FB_Init"),
           ("ARRAY[1..2] OF A", "1:140", "more dimensions"), ("ARRAY[1..2] OF A[(n := 1)]", "1:", "cannot stand here"))),
     ("FUNCTION_BLOCK A END_FUNCTION_BLOCK PROGRAM P VAR a : A(n := 1); END_VAR END_PROGRAM", "1:57", ["no FB_Init"]),
+    ("FUNCTION_BLOCK A METHOD FB_Init VAR_INPUT n : INT; END_VAR END_METHOD END_FUNCTION_BLOCK "
+     "PROGRAM P VAR a : A(n := 1, n := 2); END_VAR END_PROGRAM", "1:118", ['"n" is given twice']),
     ("PROGRAM P VAR a : ARRAY[1..2] OF INT := [1, 2, 3]; END_VAR END_PROGRAM", "1:48", ["2 elements"]),
     ("TYPE E : (Off, Gate); END_TYPE PROGRAM P VAR gate : AXIS_REF; s : E; b : BOOL; END_VAR b := s = Gate; END_PROGRAM", "1:95",
      ['E = AXIS_REF is not defined; "Gate" is the variable here, the enumerator is E#Gate']),
