@@ -214,12 +214,19 @@ static bool is_of_idle_program(const unit_t *unit)
     return owner->kind == U_PROGRAM && !owner->runs;
 }
 
+/** A task of its own runs it, or it is called when instances get their initial values. */
+static bool runs_uncalled(const unit_t *unit)
+{
+    const unit_t *owner = unit->object.owner;
+    return (unit->kind == U_PROGRAM && !unit->called) || (owner && cm1e_st_init_method(owner) == unit);
+}
+
 /** Without a CONFIGURATION all programs run: a task runs them, or a call does. A call in what nobody calls does not,
  *  and a task of its own could move what the call was to decide about: the program has to say. */
 static void check_all_run(st_t *st)
 {
     for (unit_t *unit = st->tree.units; unit; unit = unit->next)
-        if (unit->kind == U_PROGRAM && !unit->called)
+        if (runs_uncalled(unit))
             mark_run(unit);
     for (const unit_t *unit = st->tree.units; unit; unit = unit->next) {
         const unit_t *caller = unit->kind == U_PROGRAM && !unit->runs ? caller_of(st, unit) : NULL;
