@@ -265,13 +265,19 @@ static double slow_velocity(const cm1e_axis_t *axis)
 
 static bool is_fast(const cm1e_axis_t *axis) { return fabs(axis_actual_velocity(axis)) > slow_velocity(axis); }
 
+/* counts; of the motor. */
+static double away_from_set_point(const cm1e_axis_t *axis)
+{
+    return cm1e_position_minus(axis_actual(axis), axis->setpoint.position);
+}
+
 /* counts/s; the least that tells this velocity, the one of the cycle before, what both come to in the next cycle, and
  * the way since then. So one untrue value turns nothing, and the motor is not driven where the drive brakes it
  * already. */
 static double coasting_velocity(const cm1e_axis_t *axis)
 {
     const double now = axis_actual_velocity(axis), before = axis->power.velocity;
-    const double way = cm1e_position_minus(axis_actual(axis), axis->setpoint.position); /* counts */
+    const double way = away_from_set_point(axis);
     const double others[] = {before, 2.0 * now - before, way / axis->cycle_s};
     double least = fabs(now);
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
@@ -302,13 +308,11 @@ static void hold_motor(cm1e_axis_t *axis)
 }
 
 /* Takes over the enabled drive (note 5). Its set-point is where the motor was braked, or begins at the actual position
- * of this cycle. This also applies if power comes back during the ramp of a homing step that pressed: there the
- * set-point is beyond the stop. */
+ * of this cycle. */
 static void take_over(cm1e_axis_t *axis)
 {
-    if (axis_free(axis) || axis->homing_step.pushing)
+    if (axis_free(axis))
         cm1e_axis_set_to_actual(axis);
-    axis->homing_step.pushing = false;
     cm1e_axis_set_source(axis, &cm1e_source_hold);
     axis->power.energized = true;
     cm1e_axis_steps_init(axis);
@@ -383,17 +387,26 @@ static bool comes_back(cm1e_axis_t *axis, double away, double velocity)
     return power->turning == BACK && is_far(axis, away);
 }
 
-/* Else it would be pulled back as hard as it was braked, to and fro. The target goes there no faster than a motor can
- * (a rule of the bridge), though faster than its axis may be: it meets the motor. */
-static void go_to_motor(cm1e_axis_t *axis, double away)
+/* The target goes to the motor no faster than a motor can (a rule of the bridge), though faster than its axis may be:
+ * it meets the motor. true: it is there. */
+static bool go_to_motor(cm1e_axis_t *axis, double away)
 {
-    const double most = smaller(floor(cm1e_unit_peak_velocity(axis->config) * axis->cycle_s), INT32_MAX);
+    const double whole = floor(cm1e_unit_peak_velocity(axis->config) * axis->cycle_s);
+    const double most = larger(1.0, smaller(whole, INT32_MAX)); /* counts */
     cm1e_axis_shift_set_point(axis, fmax(-most, fmin(away, most)));
     cm1e_axis_hold_here(axis);
     axis->drive.command.position_step = (int32_t)larger(most, axis->drive.command.position_step);
     axis->power.brake_until_ns = later(axis->power.brake_until_ns, axis->now_ns + brake_ns);
-    if (fabs(away) <= most)
-        axis->power.turning = 0;
+    return fabs(away) <= most;
+}
+
+/* Power comes back during the ramp of a homing step that pressed, whose set-point is beyond the stop: it goes back to
+ * the motor. While the drive is not heard it waits. true: nothing presses, so the axis may be taken over. */
+static bool is_relieved(cm1e_axis_t *axis)
+{
+    if (axis->homing_step.pushing && shows_motor(axis))
+        axis->homing_step.pushing = !go_to_motor(axis, away_from_set_point(axis));
+    return !axis->homing_step.pushing;
 }
 
 /* The set-point is at rest. The torque stays for a moment after the motor turned last: where a swinging load turns
@@ -415,11 +428,11 @@ static void wait_for_rest(cm1e_axis_t *axis)
     if (!axis->drive.feedback.fresh || swing_is_over(axis))
         return;
     const double slow = slow_velocity(axis);
-    const double away = cm1e_position_minus(axis_actual(axis), axis->setpoint.position); /* counts */
+    const double away = away_from_set_point(axis);
     if (runs_away(axis, away, velocity, slow))
         power->held_ms = (uint16_t)(now_ms - longest_swing_ms);
-    else if (comes_back(axis, away, velocity))
-        go_to_motor(axis, away);
+    else if (comes_back(axis, away, velocity)) /* else it would be pulled back as hard as it was braked, to and fro */
+        power->turning = go_to_motor(axis, away) ? 0 : BACK;
     else if (fabs(velocity) > slow || (unseen && is_far(axis, away)))
         power->brake_until_ns = later(power->brake_until_ns, axis->now_ns + brake_ns);
 }
@@ -455,7 +468,8 @@ static void take_over_or_brake(cm1e_axis_t *axis)
 {
     const bool set_points = axis->mode == CM1E_MODE_CSP || axis->mode == CM1E_MODE_CSV;
     if (!set_points || cm1e_drive_is_virtual(&axis->drive) || axis->power.energized) {
-        take_over(axis);
+        if (is_relieved(axis))
+            take_over(axis);
         return;
     }
     if (axis_free(axis))
@@ -483,7 +497,7 @@ static double velocity_of_cycle(const cm1e_axis_t *axis)
 {
     static const double close_part = 0.8;
     const double shown = axis_actual_velocity(axis);
-    const double by_way = cm1e_position_minus(axis_actual(axis), axis->setpoint.position) / axis->cycle_s;
+    const double by_way = away_from_set_point(axis) / axis->cycle_s;
     const bool agrees = shown * by_way > 0.0 && fabs(by_way) >= close_part * fabs(shown);
     return agrees && axis->silence.silent_before == 0 ? shown : 0.0;
 }

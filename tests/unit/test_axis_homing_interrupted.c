@@ -105,6 +105,39 @@ static void test_power_back_within_the_ramp_relieves_the_motor(void)
     }
 }
 
+/* Behind a soft drive, or with a long lag, the set-point is far beyond the stop. Its way back to the motor is no jump: no
+ * target goes farther in a cycle than a motor can, also where answers are missing meanwhile. */
+static void test_power_back_within_the_ramp_goes_back_to_the_motor_without_a_jump(void)
+{
+    static const int32_t far = 12000;
+    for (int n = 0; n < 5 * 4; n++) {
+        const int gap = 1 + n / 4, lost = n % 4;
+        limits_there = false;
+        bus.config.axes[0].max_position_lag = 1.0;
+        step = block(1, 0.0);
+        step.detection_ns = 5000 * MS_IN_NS;
+        begin_at(55000);
+        start(1.5, 0.0);
+        for (int i = 0; i < 2000 && bus.target_position < STOP + far; i++)
+            bench_cycles(1);
+        TEST_ASSERT_GREATER_OR_EQUAL_INT32(STOP + far, bus.target_position);
+        bench_cycles(100);
+        bench_forget_steps();
+        bench_power(false);
+        bench_cycles(gap);
+        bench_power(true);
+        for (int i = 0; i < 50; i++) {
+            received = i % (lost + 1) > 0 ? CM1E_ERROR_BUS_LOST : CM1E_OK;
+            bench_cycles(1);
+        }
+        received = CM1E_OK;
+        TEST_ASSERT_EQUAL_INT(CM1E_AXIS_STANDSTILL, bench_info().state);
+        expect_standing();
+        TEST_ASSERT_LESS_OR_EQUAL_INT64((int64_t)(cm1e_unit_peak_velocity(axis->config) * 1e-3), worst_step);
+        bench_end();
+    }
+}
+
 /* The motor stands and loses its torque, and the axis has no position of its home. */
 static void expect_no_torque(cm1e_axis_state_t state, int32_t from)
 {
@@ -229,6 +262,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_mc_stop_at_every_cycle);
     RUN_TEST(test_power_back_within_the_ramp_relieves_the_motor);
+    RUN_TEST(test_power_back_within_the_ramp_goes_back_to_the_motor_without_a_jump);
     RUN_TEST(test_power_off_while_a_stop_relieves_leaves_nothing_behind);
     RUN_TEST(test_power_off_at_every_cycle);
     RUN_TEST(test_direction_disabled_at_every_cycle);
