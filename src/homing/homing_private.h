@@ -60,6 +60,7 @@ typedef struct stepping {
     int64_t settled_ns;             /**< a motor that is not at its set-point by then is blocked */
     position_t actual_before;       /**< at the last look */
     bool level, seen_on, pressed;
+    bool after_push;                /**< it ended a step before the end of that: it may begin beyond a stop */
     bool turned_positive, turned_negative; /**< the search has turned at that limit switch */
     bool referenced;                /**< the last step set a position */
     bool finishing;                 /**< positions are valid again: software limits hold */

@@ -223,10 +223,11 @@ static bool presses(const cm1e_axis_t *axis)
            fabs(lag_counts(axis) / axis->position.scale) >= pressing_lag * axis->limits.max_lag;
 }
 
-static bool held_up(const cm1e_axis_t *axis)
+/* Whether the motor is where the set-point is, and does not press. What is older than this cycle does not show it. */
+static bool has_arrived(const cm1e_axis_t *axis)
 {
     const bool away = fabs(lag_counts(axis)) > cm1e_axis_tolerance_counts(axis, tolerance_counts);
-    return axis->drive.feedback.fresh && (away || presses_by_torque(axis));
+    return axis->drive.feedback.fresh && !away && !presses_by_torque(axis);
 }
 
 static double pushed_way(const cm1e_axis_t *axis)
@@ -251,7 +252,7 @@ static void settle_cycle(cm1e_axis_t *axis)
     stepping_t *s = &axis->homing->stepping;
     if (!axis->drive.feedback.fresh)
         return;
-    if (!held_up(axis)) {
+    if (has_arrived(axis)) {
         s->phase = STEPPING_RELIEVED;
         press_on(axis, 0.0); /* the set-point is at rest already, so this profile ends at once */
     } else if (presses(axis) || axis->now_ns >= s->settled_ns) {
@@ -342,7 +343,7 @@ static cm1e_error_t prepare_search(const cm1e_axis_t *axis, const move_t *move, 
 cm1e_error_t cm1e_homing_step_prepare(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move,
                                     stepping_t *next, cm1e_profile_t *profile)
 {
-    *next = (stepping_t){.step = *step, .position = move->position};
+    *next = (stepping_t){.step = *step, .position = move->position, .after_push = axis->homing_step.pushing};
     if (searches(next->step.kind))
         return prepare_search(axis, move, next, profile);
     next->phase = STEPPING_STOP;
@@ -604,7 +605,7 @@ static bool stop_ended(cm1e_axis_t *axis)
     if (axis->state != CM1E_AXIS_STOPPING || !axis->homing_step.pushing)
         return false;
     axis->homing_step.pushing = false;
-    if (!held_up(axis))
+    if (has_arrived(axis))
         return false;
     cm1e_axis_stand(axis);
     axis->homing_step.after_stop = true;
@@ -625,7 +626,7 @@ bool cm1e_homing_step_ended(cm1e_axis_t *axis)
     cm1e_axis_stand(axis);
     if (s->phase == STEPPING_SEARCH)
         return true; /* the motor presses; the detection time runs */
-    if (s->phase == STEPPING_STOP && s->outcome != CM1E_OK && held_up(axis))
+    if (s->phase == STEPPING_STOP && (s->after_push || s->outcome != CM1E_OK) && !has_arrived(axis))
         settle(axis);
     else
         complete(axis);

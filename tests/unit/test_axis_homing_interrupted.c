@@ -138,6 +138,38 @@ static void test_power_back_within_the_ramp_goes_back_to_the_motor_without_a_jum
     }
 }
 
+/* Whatever ends a step that presses is not done while the motor presses on, also where answers are missing. */
+static void test_what_ends_a_step_that_presses_relieves_the_motor(void)
+{
+    enum { BY_STOP, BY_FINISH, BY_DIRECT, BY_SECOND_FINISH, ENDS };
+    for (int n = 0; n < ENDS * 3; n++) {
+        const int end = n % ENDS, lost = n / ENDS;
+        limits_there = false;
+        step = block(1, 60.0);
+        step.detection_ns = 5000 * MS_IN_NS;
+        begin_at(59000);
+        const cm1e_command_id_t pressing = start(0.2, 0.0);
+        for (int i = 0; i < 2000 && bus.torque < 300; i++)
+            bench_cycles(1);
+        TEST_ASSERT_GREATER_OR_EQUAL_INT(300, bus.torque);
+        step = (cm1e_homing_step_t){.kind = end == BY_DIRECT ? CM1E_STEP_DIRECT : CM1E_STEP_FINISH};
+        if (end == BY_SECOND_FINISH)
+            start(0.2, 0.0);
+        const cm1e_axis_command_t stop = {.kind = CM1E_COMMAND_STOP};
+        const cm1e_command_id_t id = end == BY_STOP ? bench_start_command(&stop) : start(0.2, 0.0);
+        expect(pressing, CM1E_COMMAND_ABORTED, CM1E_OK);
+        for (int i = 1; i < 1000 && bench_state_of(id) == CM1E_COMMAND_ACTIVE; i++) {
+            received = i % (lost + 1) > 0 ? CM1E_ERROR_BUS_LOST : CM1E_OK;
+            bench_cycles(1);
+        }
+        received = CM1E_OK;
+        expect(id, CM1E_COMMAND_DONE, CM1E_OK);
+        expect_standing();
+        TEST_ASSERT_EQUAL_INT(end == BY_STOP ? CM1E_AXIS_STOPPING : CM1E_AXIS_STANDSTILL, bench_info().state);
+        bench_end();
+    }
+}
+
 /* The motor stands and loses its torque, and the axis has no position of its home. */
 static void expect_no_torque(cm1e_axis_state_t state, int32_t from)
 {
@@ -263,6 +295,7 @@ int main(void)
     RUN_TEST(test_mc_stop_at_every_cycle);
     RUN_TEST(test_power_back_within_the_ramp_relieves_the_motor);
     RUN_TEST(test_power_back_within_the_ramp_goes_back_to_the_motor_without_a_jump);
+    RUN_TEST(test_what_ends_a_step_that_presses_relieves_the_motor);
     RUN_TEST(test_power_off_while_a_stop_relieves_leaves_nothing_behind);
     RUN_TEST(test_power_off_at_every_cycle);
     RUN_TEST(test_direction_disabled_at_every_cycle);
