@@ -327,6 +327,13 @@ static inline bool jumped(const link_t *link, const master_view_t *view)
     return fabs(view->counts - before->counts - way) > link->most_unexplained;
 }
 
+/* Whether the master has gone on in this cycle, and the slave has not: another master of it has begun anew meanwhile.
+ * The slave still sees that way when it advances. */
+static bool is_ahead(const cm1e_axis_t *slave, const link_t *link, const master_view_t *view)
+{
+    return link->master->advanced && !slave->advanced && !jumped(link, view);
+}
+
 static bool stands(link_t *link)
 {
     position_t unused;
@@ -375,6 +382,8 @@ static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool o
         view.counts = cm1e_position_minus(position, link->origin);
         if (i == 0 && (follow == slave->coupling->now || keeps_phase(slave, link)))
             add_phase(slave, link, &view);
+        if (!on_the_way && is_ahead(slave, link, &view))
+            continue;
         const bool jump = on_the_way && jumped(link, &view);
         link->seen = view;
         if (jump)

@@ -37,9 +37,9 @@ static double ahead(void)
 }
 
 /** In the middle of a motion, with a motor that has followed without a load so far. */
-static cm1e_command_id_t begin(double direction, double load)
+static cm1e_command_id_t begin_among(int axes, double direction, double load)
 {
-    axes_begin(1);
+    axes_begin(axes);
     way = direction;
     hardest = 1e9;
     speed = 0.0;
@@ -53,6 +53,8 @@ static cm1e_command_id_t begin(double direction, double load)
     fastest = slowest = way * speed;
     return id;
 }
+
+static cm1e_command_id_t begin(double direction, double load) { return begin_among(1, direction, load); }
 
 /** No frames for some cycles, and the program is late: the drive holds its last target. */
 static void pause_for(int cycles)
@@ -165,6 +167,37 @@ static void test_a_stop_is_not_done_before_its_motor(void)
     TEST_ASSERT_TRUE(fabs(speed) < counts_of_cycle() / 4.0 && fabs(ahead()) < 1.5);
 }
 
+/** The other master of a sum has gone on already in the cycle in which the set-point of this one goes after its motor:
+ *  the slave sees both ways, whichever of them is the first, and makes up what it loses. */
+static void test_a_sum_goes_on_where_one_of_its_masters_is_gone_after(void)
+{
+    enum { OTHER = 1, SUM = 2, RUNS = 4 };
+    for (int run = 0; run < RUNS; run++) {
+        const int first = run % 2 ? AXIS : OTHER;
+        begin_among(3, 1.0, 1e9);
+        axes_bench.order[0] = run / 2 ? AXIS : OTHER;
+        axes_bench.order[1] = run / 2 ? OTHER : AXIS;
+        axes_bench.witness[SUM].strictness = AXES_UNWATCHED;
+        axes_move_velocity(OTHER, 1.0);
+        const cm1e_axis_coupling_t coupling = {
+            .master = {{.axis = axes_reference(first), .numerator = 1, .denominator = 1},
+                       {.axis = axes_reference(OTHER - first), .numerator = 1, .denominator = 1}},
+            .combine = mcAddAxes};
+        const cm1e_axis_command_t combine = {.kind = CM1E_COMMAND_COMBINE_AXES, .coupling = &coupling};
+        axes_wait_reached(SUM, axes_command(SUM, &combine), 500);
+        const double before = axes_info(SUM).set_position - axes_info(AXIS).set_position - axes_info(OTHER).set_position;
+        hardest = 4.0;
+        lose_frames(LOST);
+        axes_cycles(1);
+        TEST_ASSERT_TRUE(under_way());
+        axes_cycles(3000);
+        axes_must_be(SUM, CM1E_AXIS_SYNCHRONIZED_MOTION);
+        const double after = axes_info(SUM).set_position - axes_info(AXIS).set_position - axes_info(OTHER).set_position;
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, before, after);
+        axes_end();
+    }
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -173,5 +206,6 @@ int main(void)
     RUN_TEST(test_a_motor_that_does_not_slow_down_is_gone_after_for_a_while);
     RUN_TEST(test_a_stop_meanwhile_stops_the_axis);
     RUN_TEST(test_a_stop_is_not_done_before_its_motor);
+    RUN_TEST(test_a_sum_goes_on_where_one_of_its_masters_is_gone_after);
     return UNITY_END();
 }
