@@ -13,7 +13,6 @@
 #define SERVO_SPEED_COUNTS 300.0  /* and counts/s: targets are whole counts */
 #define COARSE_COUNTS 1000.0      /* counts/s: target velocities before firmware 1.3.3 */
 #define SERVO_GAIN 1.15           /* of the maximum acceleration, within GAIN_MS */
-#define CROSSING_RAMP_S 0.02     /* docs/FUNCTION-BLOCKS.md: until a crossing of backlash has its velocity */
 #define SERVO_BANDWIDTH 500.0     /* rad/s, of its position loop */
 #define STALL_OVERSHOOT 0.05      /* docs/SAFETY.md: 5 % above the earlier speed after a pause of the host */
 #define SWING_OVERSHOOT 0.11      /* a heavy load that the drive alone swings in a long pause (docs/SAFETY.md), or whose
@@ -93,13 +92,6 @@ void judge_look(run_t *run)
 /** Nm; counts of a revolution. */
 static double peak_torque(const axis_spec_t *spec) { return spec->kind == AXIS_CIA402 ? 1.2 : 0.117; }
 static double revolution(const axis_spec_t *spec) { return spec->kind == AXIS_CIA402 ? 131072 : 50000; }
-
-double crossing_speed(const axis_spec_t *spec) { return spec->backlash > 0 ? spec->backlash_velocity : 0; }
-
-double crossing_acceleration(const axis_spec_t *spec)
-{
-    return fmin(crossing_speed(spec) / CROSSING_RAMP_S, fmin(spec->acceleration, spec->deceleration));
-}
 
 static bool by_velocity(const axis_spec_t *spec) { return spec->kind == AXIS_CM1E && spec->mapping == MAPPING_CSV; }
 

@@ -3,6 +3,15 @@
 
 #include "scenario_private.h"
 
+#define RAMP_S 0.02 /* docs/FUNCTION-BLOCKS.md: until a crossing of backlash has its velocity */
+
+double crossing_speed(const axis_spec_t *spec) { return spec->backlash > 0 ? spec->backlash_velocity : 0; }
+
+double crossing_acceleration(const axis_spec_t *spec)
+{
+    return fmin(crossing_speed(spec) / RAMP_S, fmin(spec->acceleration, spec->deceleration));
+}
+
 /** Whether the crossing that the last reversal of the set velocity began is not over yet. Without torque the axis looks
  *  where its load is. */
 static bool crosses(const run_t *run, machine_axis_t *axis)

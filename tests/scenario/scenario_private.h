@@ -210,10 +210,6 @@ void wire_fall_back(run_t *run, int network, uint32_t position);
 
 /* ---- scenario_judge.c -------------------------------------------------------------------------------------------- */
 
-/** Counts/s, at which a motor crosses its gear's backlash, on top of its motion. */
-double crossing_speed(const axis_spec_t *spec);
-/** Counts/s2; it is added to that of the motion, as its speed is. */
-double crossing_acceleration(const axis_spec_t *spec);
 void judge_begin(run_t *run);
 /** Before the program: what the machine shows now. */
 void judge_look(run_t *run);
@@ -229,12 +225,19 @@ bool is_caught(const run_t *run, const machine_axis_t *axis);
 /** What the program does with the analog terminal, and what it has to read there. */
 void analog_cycle(run_t *run);
 
+/* ---- scenario_judge_load.c --------------------------------------------------------------------------------------- */
+
+/** Counts/s, at which a motor crosses its gear's backlash, on top of its motion. */
+double crossing_speed(const axis_spec_t *spec);
+/** Counts/s2; it is added to that of the motion, as its speed is. */
+double crossing_acceleration(const axis_spec_t *spec);
+/** A motor pushes its load with either flank of the gap: at the start with the one of the positive direction. */
+void judge_move_load(const run_t *run, machine_axis_t *axis);
+
 /* ---- scenario_judge_enable.c ------------------------------------------------------------------------------------- */
 
 /** MC_Power.Status is not TRUE before the motor rests. */
 void judge_enable(run_t *run, machine_axis_t *axis);
-/** A motor pushes its load with either flank of the gap: at the start with the one of the positive direction. */
-void judge_move_load(const run_t *run, machine_axis_t *axis);
 /** Something that is not a motion has happened to it not long ago, and it comes back to its set-point. */
 bool was_disturbed(const run_t *run, const witness_t *seen);
 
