@@ -97,6 +97,7 @@ void cm1e_st_add_getter(parsing_t *parsing, place_t place, vars_t vars, stmts_t 
 void cm1e_st_add_setter(parsing_t *parsing, place_t place, vars_t vars, stmts_t body);
 /** of the lexer: whether a word like METHOD can begin a part here, and what a word does to the heading. */
 bool cm1e_st_begins_part(const parsing_t *parsing);
+bool cm1e_st_in_heading(const parsing_t *parsing);
 bool cm1e_st_is_modifier(const parsing_t *parsing);
 /** The modifiers with another one, by its word; two that contradict each other are reported. */
 int cm1e_st_with_modifier(parsing_t *parsing, place_t place, int modifiers, const char *word);

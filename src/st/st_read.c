@@ -158,7 +158,14 @@ static const char *const missing[] = {
 
 bool cm1e_st_begins_part(const parsing_t *parsing)
 {
-    return parsing->heading || strcmp(parsing->before, ";") == 0 || strncasecmp(parsing->before, "END_", 4) == 0;
+    return cm1e_st_in_heading(parsing) || strcmp(parsing->before, ";") == 0 ||
+           strncasecmp(parsing->before, "END_", 4) == 0;
+}
+
+/* A program may be called Action: what stands right behind PROGRAM is its name. */
+bool cm1e_st_in_heading(const parsing_t *parsing)
+{
+    return parsing->heading && strcasecmp(parsing->before, "PROGRAM") != 0;
 }
 
 bool cm1e_st_is_modifier(const parsing_t *parsing)

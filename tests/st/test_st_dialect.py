@@ -191,6 +191,9 @@ INTERFACE I METHOD M : INT VAR_INPUT a : INT := 6; END_VAR END_METHOD END_INTERF
 FUNCTION_BLOCK B IMPLEMENTS I METHOD M : INT VAR_INPUT a : INT := 6; END_VAR M := a; END_METHOD END_FUNCTION_BLOCK
 PROGRAM Main VAR a, b, c, d, e, q : INT; fb : B; i : I := fb; END_VAR a := F(); b := F(1); c := H(q); d := fb.M() + F(); e := i.M(); F(); END_PROGRAM
 """, 1, {"Main.a": 34, "Main.b": 14, "Main.c": 4, "Main.q": 1, "Main.d": 40, "Main.e": 6}),
+    ("named_as_parts", "PROGRAM Action VAR_OUTPUT n : INT; END_VAR n := n + 1; END_PROGRAM PROGRAM Extends Method(); END_PROGRAM PROGRAM Method "
+     "METHOD Go : INT Go := 5; END_METHOD END_PROGRAM PROGRAM Main VAR n : INT; END_VAR n := Action.n + Method.Go(); END_PROGRAM", 1,
+     {"Main.n": 6}),
     # FB_Init runs, though nothing calls it: so does a program that it alone calls.
     ("init_of_program", "FUNCTION_BLOCK B METHOD FB_Init VAR_INPUT bInitRetains, bInCopyCode : BOOL; END_VAR Fill(); END_METHOD END_FUNCTION_BLOCK "
      "PROGRAM Fill VAR n : INT; END_VAR n := n + 5; END_PROGRAM PROGRAM Main VAR fb : B; n : INT; END_VAR n := Fill.n; END_PROGRAM", 2,
