@@ -69,9 +69,10 @@ static void program_text(const cm1e_axis_t *axis, char *text, size_t size)
 {
     if (axis->fault.late) {
         snprintf(text, size,
-                 "Axis \"%s\": every cycle of the last %.0f ms was late, so that no set-point could move, and no ramp "
-                 "end. Its torque was taken away. Take a longer cycle time, or find out what takes so long (statistics "
-                 "of the scheduler); then reset the axis with MC_Reset.", axis->config->name, axis->fault.value);
+                 "Axis \"%s\": every cycle of the last %.0f ms was late. Set-points hardly move then, and ramps do not "
+                 "end, so it was stopped at once, without a ramp. Take a longer cycle time, or find out what takes so "
+                 "long (statistics of the scheduler); then reset the axis with MC_Reset.",
+                 axis->config->name, axis->fault.value);
         return;
     }
     if (!axis->fault.task) {
