@@ -2,9 +2,11 @@
  * @file units_log.h
  * What the axes of axes_bench.h do in each cycle, for tests that run the same program in other units of length. A power
  * of two changes no digit, so every count and every number has to be the same. The test gets its own cbrt() with this.
+ * A unit below 0 is the mirror: each axis is inverted, and so are all positions of the program, while sizes stay. Then
+ * the counts are the same but for rounding.
  *
  *     for (int run = 0; run < UNITS_COUNT; run++) {
- *         units_begin(run);            then a revolution of a motor is `in_units` u
+ *         units_begin(run, units[run]); then a revolution of a motor is `in_units` u
  *         axes_describe(2);
  *         units_describe();
  *         ...
@@ -19,10 +21,15 @@
 
 enum { UNITS_COUNT = 4, UNITS_NOTES = 24 };
 
-/** u in one revolution of a motor, a power of 64. */
+/** 1 first; then other powers of 64, so that roots change no digit either. */
+extern const double units[UNITS_COUNT];
+
+/** u in one revolution of a motor. */
 extern double in_units;
 
-void units_begin(int run);
+void units_begin(int run, double size);
+
+bool mirrored(void);
 
 /** The unit of all axes, between axes_describe() and axes_make(). */
 void units_describe(void);
@@ -31,13 +38,16 @@ void units_note(double number);
 
 void units_cycle(void);
 
-/** Numbers of revolutions, 1/s and so on in u. */
+/** Positions, and velocities with a sign: revolutions, 1/s and so on in u. */
 double in(double base);
+
+/** Limits, tolerances and velocities without a sign. */
+double size(double base);
 
 /** Evenly over the decades. */
 double decade(double low, double high);
 
-/** An input that is not given, or this in u. */
+/** A size that is not given, or this. */
 double or_default(double base);
 
 #endif

@@ -1,5 +1,5 @@
-/* The same machine and the same program in other units of length: the same counts in every cycle. A constant that has a
- * unit, and is not of counts, shows at once. */
+/* The same machine and the same program in other units of length, and inverted: the same counts in every cycle. A
+ * constant that has a unit, and is not of counts, shows at once, and so does what is right in one direction only. */
 #include "../support/axes_bench.h"
 #include "../support/chance.h"
 #include "../support/units_log.h"
@@ -8,6 +8,7 @@
 
 enum { LINEAR, SLAVE, TURNING, AXES, CYCLES = 3000, PROGRAMS = 240, IDS = 4 };
 
+static bool mirrors; /* the program has only what is the same both ways */
 static cm1e_command_id_t ids[AXES][IDS];
 static unsigned long long taken, refused, seen[CM1E_AXIS_STATE_COUNT];
 
@@ -54,20 +55,21 @@ static void describe_any(int n)
     cm1e_axis_config_t *c = axes_config(n);
     const double velocity = decade(2, 50), acceleration = decade(5, 100), jerk = decade(100, 2000);
     if (one_in(2))
-        c->max_velocity = in(velocity), c->max_acceleration = in(acceleration), c->max_jerk = in(jerk);
+        c->max_velocity = size(velocity), c->max_acceleration = size(acceleration), c->max_jerk = size(jerk);
     if (one_in(3))
-        c->max_deceleration = in(acceleration * uniform(0.5, 1));
+        c->max_deceleration = size(acceleration * uniform(0.5, 1));
     const double gap = decade(0.001, 0.2);
-    if (one_in(4))
-        c->backlash = in(gap), c->backlash_velocity = or_default(decade(0.1, 1));
+    if (one_in(4) && !mirrors)
+        c->backlash = size(gap), c->backlash_velocity = or_default(decade(0.1, 1));
     if (one_in(3))
-        c->in_position_window = in(decade(0.0001, 0.01)), c->in_position_done_waits = true;
+        c->in_position_window = size(decade(0.0001, 0.01)), c->in_position_done_waits = true;
     if (one_in(3))
-        c->max_position_lag = in(decade(0.05, 2));
-    c->invert = one_in(3);
+        c->max_position_lag = size(decade(0.05, 2));
+    c->invert = one_in(3) != mirrored();
     c->table_profiles = true;
     c->coupling_stop = (cm1e_coupling_stop_t)pick(3);
-    c->inputs = (cm1e_input_config_t){.limit_positive = 1, .limit_negative = 2, .home = 3};
+    c->inputs = (cm1e_input_config_t){.limit_positive = mirrored() ? 2 : 1, .limit_negative = mirrored() ? 1 : 2,
+                                      .home = 3};
     c->jog_slow = or_default(0.1);
 }
 
@@ -81,10 +83,12 @@ static void make_machine(void)
         axes_bench.witness[n].strictness = AXES_UNWATCHED;
     }
     if (one_in(2)) {
-        axes_config(LINEAR)->software_limit_positive = in(uniform(2, 20));
-        axes_config(LINEAR)->software_limit_negative = in(-uniform(2, 20));
+        const double one = in(uniform(2, 20)), other = in(-uniform(2, 20));
+        axes_config(LINEAR)->software_limit_positive = fmax(one, other);
+        axes_config(LINEAR)->software_limit_negative = fmin(one, other);
     }
-    axes_config(TURNING)->modulo_range = in((20 + pick(180)) / 64.0); /* what a person writes is the same fraction */
+    if (!mirrors)
+        axes_config(TURNING)->modulo_range = in((20 + pick(180)) / 64.0); /* the same fraction in all units */
     axes_make();
     axes_enable_all();
 }
@@ -106,7 +110,8 @@ static const cm1e_axis_table_t *any_table(void)
     for (int i = 0; i < 10; i++)
         values[i] = i ? in(uniform(-size, size)) : 0;
     table = (cm1e_axis_table_t){.read = base_pair, .reference = values, .count = 2 + pick(8),
-                                .time_scale = one_in(2) ? 0 : uniform(0.5, 20), .scale = one_in(2) ? 0 : uniform(0.5, 2)};
+                                .time_scale = one_in(2) ? 0 : uniform(0.5, 20),
+                                .scale = one_in(2) ? 0 : uniform(0.5, 2)};
     return &table;
 }
 
@@ -144,14 +149,15 @@ static const cm1e_axis_coupling_t *any_coupling(int n)
     static const int32_t ratios[] = {1, -1, 2, 3, -5};
     const int master = n == LINEAR || one_in(3) ? TURNING : LINEAR, other = master == LINEAR ? TURNING : LINEAR;
     coupling = (cm1e_axis_coupling_t){
-        .master = {{axes_reference(master), one_in(4) ? mcActualValue : mcSetValue, ratios[pick(5)], 1 + (uint32_t)pick(3)},
+        .master = {{axes_reference(master), one_in(4) ? mcActualValue : mcSetValue, ratios[pick(5)],
+                    1 + (uint32_t)pick(3)},
                    {axes_reference(n == LINEAR ? master : other), mcSetValue, ratios[pick(5)], 1 + (uint32_t)pick(7)}},
         .combine = one_in(2) ? mcAddAxes : mcSubAxes,
         .master_sync_position = axes_info(master).set_position + in(uniform(-1, 5)),
         .slave_sync_position = axes_info(n).set_position + in(uniform(-2, 2)),
-        .master_start_distance = or_default(uniform(0.1, 3)), .sync_mode = (MC_SYNC_MODE)pick(3),
-        .start_mode = (MC_START_MODE)pick(3), .master_offset = or_default(uniform(-1, 1)),
-        .slave_offset = or_default(uniform(-1, 1)), .master_scaling = one_in(2) ? 0 : uniform(0.3, 3),
+        .master_start_distance = one_in(2) ? 0 : in(uniform(0.1, 3)), .sync_mode = (MC_SYNC_MODE)pick(3),
+        .start_mode = (MC_START_MODE)pick(3), .master_offset = one_in(2) ? 0 : in(uniform(-1, 1)),
+        .slave_offset = one_in(2) ? 0 : in(uniform(-1, 1)), .master_scaling = one_in(2) ? 0 : uniform(0.3, 3),
         .slave_scaling = one_in(2) ? 0 : uniform(-2, 2),
     };
     return &coupling;
@@ -169,7 +175,16 @@ static cm1e_command_kind_t any_kind(int n)
         CM1E_COMMAND_GEAR_IN, CM1E_COMMAND_GEAR_IN_POS, CM1E_COMMAND_GEAR_IN_POS, CM1E_COMMAND_CAM_IN,
         CM1E_COMMAND_CAM_IN, CM1E_COMMAND_COMBINE_AXES, CM1E_COMMAND_GEAR_OUT, CM1E_COMMAND_CAM_OUT,
         CM1E_COMMAND_PHASING_ABSOLUTE, CM1E_COMMAND_PHASING_RELATIVE, CM1E_COMMAND_MOVE_SUPERIMPOSED};
-    return n == SLAVE && !one_in(3) ? coupled[pick(11)] : ordinary[pick(16)];
+    const cm1e_command_kind_t kind = n == SLAVE && !one_in(3) ? coupled[pick(11)] : ordinary[pick(16)];
+    const bool one_sided = kind == CM1E_COMMAND_CAM_IN || kind == CM1E_COMMAND_HOMING_STEP;
+    return one_sided && mirrors ? CM1E_COMMAND_MOVE_VELOCITY : kind;
+}
+
+static MC_DIRECTION any_direction(void)
+{
+    if (!mirrors)
+        return (MC_DIRECTION)pick(5);
+    return one_in(2) != mirrored() ? mcPositiveDirection : mcNegativeDirection;
 }
 
 static cm1e_axis_command_t any_command(int n)
@@ -179,9 +194,9 @@ static cm1e_axis_command_t any_command(int n)
     const double end_velocity = uniform(-3, 3);
     return (cm1e_axis_command_t){
         .kind = kind, .position = in(n == TURNING && one_in(2) ? uniform(0, 0.3) : uniform(-3, 3)),
-        .velocity = in(velocity), .end_velocity = in(end_velocity), .acceleration = or_default(acceleration),
+        .velocity = size(velocity), .end_velocity = in(end_velocity), .acceleration = or_default(acceleration),
         .deceleration = or_default(acceleration * uniform(0.5, 2)), .jerk = or_default(jerk),
-        .direction = (MC_DIRECTION)pick(4), .buffer_mode = one_in(2) ? mcAborting : (MC_BUFFER_MODE)pick(6),
+        .direction = any_direction(), .buffer_mode = one_in(2) ? mcAborting : (MC_BUFFER_MODE)pick(6),
         .step = any_step(), .table = any_table(), .coupling = any_coupling(n),
     };
 }
@@ -212,11 +227,12 @@ static void change_settings(int n)
     if (one_in(2))
         units_note(cm1e_axis_set_override(axes_axis(n), factor, one_in(2) ? 1 : uniform(0.1, 1), 1));
     else if (one_in(3))
-        units_note(cm1e_axis_set_position(axes_axis(n), in(n == TURNING ? uniform(0, 0.3) : uniform(-3, 3)), one_in(2)));
+        units_note(cm1e_axis_set_position(axes_axis(n), in(n == TURNING ? uniform(0, 0.3) : uniform(-3, 3)),
+                                          one_in(2)));
     else
         units_note(cm1e_axis_write_parameter(axes_axis(n), one_in(2) ? CM1E_PARAMETER_MAX_VELOCITY_APPL
                                                                           : CM1E_PARAMETER_MAX_ACCELERATION_APPL,
-                                             in(decade(5, 50))));
+                                             size(decade(5, 50))));
 }
 
 static void program(void)
@@ -278,11 +294,11 @@ static void one_cycle(void)
     units_cycle();
 }
 
-static void run_in(int units, int seed)
+static void run_in(int run, double unit, int seed)
 {
     char name[40];
     snprintf(name, sizeof name, "CM1E_TEST_SEED=%d", seed);
-    units_begin(units);
+    units_begin(run, unit);
     chance_seed((uint64_t)seed);
     memset(ids, 0, sizeof ids);
     make_machine();
@@ -296,7 +312,7 @@ static void test_no_axis_depends_on_the_unit_of_length(void)
 {
     for (int i = 0; i < seed_count(PROGRAMS); i++)
         for (int k = 0; k < UNITS_COUNT; k++)
-            run_in(k, (int)seed_of(i));
+            run_in(k, units[k], (int)seed_of(i));
     printf("%llu commands taken, %llu refused\n", taken, refused);
     if (seeds_given())
         return;
@@ -305,9 +321,19 @@ static void test_no_axis_depends_on_the_unit_of_length(void)
         TEST_ASSERT_GREATER_THAN_MESSAGE(100, seen[state], cm1e_axis_state_name((cm1e_axis_state_t)state));
 }
 
+/** What is inverted, and is told everything inverted, turns the same way. */
+static void test_no_axis_depends_on_the_sign_of_the_unit(void)
+{
+    mirrors = true;
+    for (int i = 0; i < seed_count(PROGRAMS); i++)
+        for (int k = 0; k < 2; k++)
+            run_in(k, k ? -1 : 1, (int)seed_of(i));
+}
+
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_no_axis_depends_on_the_unit_of_length);
+    RUN_TEST(test_no_axis_depends_on_the_sign_of_the_unit);
     return UNITY_END();
 }

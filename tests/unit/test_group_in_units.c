@@ -1,5 +1,5 @@
-/* The same group and the same program in other units of length: the same counts in every cycle. A constant that has a
- * unit, and is not of counts, shows at once. */
+/* The same group and the same program in other units of length, and inverted: the same counts in every cycle. A
+ * constant that has a unit, and is not of counts, shows at once, and so does what is right in one direction only. */
 #include "../support/chance.h"
 #include "../support/group_bench.h"
 #include "../support/units_log.h"
@@ -7,6 +7,7 @@
 
 enum { AXES = 3, CYCLES = 3000, PROGRAMS = 240, IDS = 8 };
 
+static bool mirrors; /* without what is not the same both ways */
 static cm1e_command_id_t ids[IDS];
 static double place[AXES]; /* base units: where the last segment ends */
 static unsigned long long taken, refused, moved;
@@ -23,15 +24,16 @@ static void make_machine(void)
         cm1e_axis_config_t *c = axes_config(n);
         const double velocity = decade(2, 50), acceleration = decade(10, 100), jerk = decade(100, 2000);
         if (one_in(2))
-            c->max_velocity = in(velocity), c->max_acceleration = in(acceleration), c->max_jerk = in(jerk);
+            c->max_velocity = size(velocity), c->max_acceleration = size(acceleration), c->max_jerk = size(jerk);
         if (one_in(3))
-            c->max_deceleration = in(acceleration * uniform(0.5, 1));
-        if (one_in(5))
-            c->backlash = in(decade(0.001, 0.2));
+            c->max_deceleration = size(acceleration * uniform(0.5, 1));
+        if (one_in(5) && !mirrors)
+            c->backlash = size(decade(0.001, 0.2));
         c->in_position_done_waits = one_in(3);
-        c->invert = one_in(3);
+        c->invert = one_in(3) != mirrored();
+        const double one = in(uniform(2, 20)), other = in(-uniform(2, 20));
         if (one_in(3))
-            c->software_limit_positive = in(uniform(2, 20)), c->software_limit_negative = in(-uniform(2, 20));
+            c->software_limit_positive = fmax(one, other), c->software_limit_negative = fmin(one, other);
         axes_bench.witness[n].strictness = AXES_UNWATCHED;
         place[n] = 0;
     }
@@ -56,18 +58,18 @@ static cm1e_group_command_t any_command(void)
     const double velocity = decade(0.2, 20), acceleration = decade(5, 100), jerk = decade(50, 2000);
     cm1e_group_command_t command = {
         .kind = any_kind(), .circ_mode = (MC_CIRC_MODE)pick(2), .path_choice = (MC_CIRC_PATHCHOICE)pick(2),
-        .velocity = in(velocity), .acceleration = or_default(acceleration),
+        .velocity = size(velocity), .acceleration = or_default(acceleration),
         .deceleration = or_default(acceleration * uniform(0.5, 2)), .jerk = or_default(jerk),
         .buffer_mode = one_in(6) ? mcAborting : (MC_BUFFER_MODE)(1 + pick(5)), .transition = transitions[pick(3)],
-        .transition_parameter = in(decade(0.01, 0.5)),
+        .transition_parameter = size(decade(0.01, 0.5)),
     };
     const bool relative = command.kind == CM1E_GROUP_LINEAR_RELATIVE || command.kind == CM1E_GROUP_CIRCULAR_RELATIVE;
-    const double size = decade(0.02, 2);
+    const double most = decade(0.02, 2);
     const double from[] = {relative ? 0 : place[0], relative ? 0 : place[1], relative ? 0 : place[2]};
     for (int n = 0; n < AXES; n++) {
-        const double way = n == 2 && one_in(2) ? 0 : uniform(-size, size);
+        const double way = n == 2 && one_in(2) ? 0 : uniform(-most, most);
         command.position[n] = in(from[n] + way);
-        command.auxiliary[n] = in(from[n] + way / 2 + (command.circ_mode == mcBorder ? uniform(-size, size) / 3 : 0));
+        command.auxiliary[n] = in(from[n] + way / 2 + (command.circ_mode == mcBorder ? uniform(-most, most) / 3 : 0));
         if (command.kind <= CM1E_GROUP_CIRCULAR_RELATIVE)
             place[n] += way;
         if (fabs(place[n]) > 2)
@@ -138,15 +140,15 @@ static void one_cycle(void)
     moved += path != 0;
     units_note(sum);
     units_note(info.state);
-    units_note(path / in_units);
+    units_note(path / fabs(in_units));
     units_cycle();
 }
 
-static void run_in(int units, int seed)
+static void run_in(int run, double unit, int seed)
 {
     char name[40];
     snprintf(name, sizeof name, "CM1E_TEST_SEED=%d", seed);
-    units_begin(units);
+    units_begin(run, unit);
     chance_seed((uint64_t)seed);
     memset(ids, 0, sizeof ids);
     make_machine();
@@ -160,14 +162,24 @@ static void test_no_group_depends_on_the_unit_of_length(void)
 {
     for (int i = 0; i < seed_count(PROGRAMS); i++)
         for (int k = 0; k < UNITS_COUNT; k++)
-            run_in(k, (int)seed_of(i));
+            run_in(k, units[k], (int)seed_of(i));
     printf("%llu commands taken, %llu refused, %llu cycles on a path\n", taken, refused, moved);
     TEST_ASSERT_TRUE(seeds_given() || (taken > refused && moved > CYCLES));
+}
+
+/** What is inverted, and is told everything inverted, goes the same way. */
+static void test_no_group_depends_on_the_sign_of_the_unit(void)
+{
+    mirrors = true;
+    for (int i = 0; i < seed_count(PROGRAMS); i++)
+        for (int k = 0; k < 2; k++)
+            run_in(k, k ? -1 : 1, (int)seed_of(i));
 }
 
 int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_no_group_depends_on_the_unit_of_length);
+    RUN_TEST(test_no_group_depends_on_the_sign_of_the_unit);
     return UNITY_END();
 }
