@@ -6,7 +6,7 @@
 #include "axis/axis_parameters.h"
 #include "unity.h"
 
-enum { LINEAR, SLAVE, TURNING, AXES, CYCLES = 3000, PROGRAMS = 240, IDS = 4 };
+enum { LINEAR, SLAVE, TURNING, AXES, CYCLES = 3000, PROGRAMS = 120, IDS = 4 };
 
 static bool mirrors; /* the program has only what is the same both ways */
 static cm1e_command_id_t ids[AXES][IDS];

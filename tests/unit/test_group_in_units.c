@@ -5,7 +5,7 @@
 #include "../support/units_log.h"
 #include "unity.h"
 
-enum { AXES = 3, CYCLES = 3000, PROGRAMS = 240, IDS = 8 };
+enum { AXES = 3, CYCLES = 3000, PROGRAMS = 120, IDS = 8 };
 
 static bool mirrors; /* without what is not the same both ways */
 static cm1e_command_id_t ids[IDS];
