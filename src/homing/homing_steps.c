@@ -347,6 +347,10 @@ cm1e_error_t cm1e_homing_step_prepare(const cm1e_axis_t *axis, const cm1e_homing
     if (searches(next->step.kind))
         return prepare_search(axis, move, next, profile);
     next->phase = STEPPING_STOP;
+    const stepping_t *ended = &axis->homing->stepping;
+    const bool halts = next->step.kind == CM1E_STEP_DIRECT || move->position == 0.0;
+    if (next->after_push && halts && !step_by_switch(ended->step.kind)) /* the drive may press without any lag */
+        next->step.torque_limit = ended->step.torque_limit;
     if (next->step.kind == CM1E_STEP_FINISH)
         return prepare_finish(axis, move, next, profile);
     const cm1e_motion_state_t now = set_state(axis);

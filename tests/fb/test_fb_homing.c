@@ -151,6 +151,36 @@ START_TEST(test_block_does_not_go_on_pushing)
 }
 END_TEST
 
+/* The motor presses with about TorqueLimit, hardly a count from its set-point. The block that ends the step is not done
+ * before nothing presses: the drive would sum up more and more. */
+START_TEST(test_end_of_a_step_that_presses_without_lag)
+{
+    for (int n = 0; n < 10; n++) {
+        begin(_i);
+        MC_StepBlock_t block = {.Axis = &reference, .Execute = TRUE, .Direction = mcNegativeDirection, .Velocity = 0.3,
+                                .TorqueLimit = 30.0, .DetectionVelocityTime = 9000000000};
+        MC_FinishHoming_t finish = {.Axis = &reference, .Velocity = 0.5};
+        MC_HomeDirect_t direct = {.Axis = &reference};
+        const int from = 4600 + 20 * n;
+        for (int i = 0; i < from + 1000 && !finish.Done && !direct.Done; i++) {
+            inputs();
+            finish.Execute = i >= from && n % 2 == 0;
+            direct.Execute = i >= from && n % 2 == 1;
+            if (i == from)
+                ck_assert_msg(info().actual_torque < -25.0, "it does not press: %.1f %%", info().actual_torque);
+            MC_StepBlock(&block);
+            MC_FinishHoming(&finish);
+            MC_HomeDirect(&direct);
+            outputs();
+        }
+        ck_assert(block.CommandAborted && (finish.Done || direct.Done));
+        cycles(300);
+        ck_assert_msg(fabs(info().actual_torque) < 15.0, "still %.1f %%", info().actual_torque);
+        close_segment();
+    }
+}
+END_TEST
+
 START_TEST(test_mc_stop_ends_a_search_in_standstill_not_homed)
 {
     begin(0);
@@ -305,6 +335,7 @@ int main(void)
     tcase_add_loop_test(tests, test_switch_fast_then_slow_then_away, 0, DEVICES);
     tcase_add_loop_test(tests, test_switch_then_hard_stop_then_away, 0, DEVICES);
     tcase_add_loop_test(tests, test_block_does_not_go_on_pushing, 0, DEVICES);
+    tcase_add_loop_test(tests, test_end_of_a_step_that_presses_without_lag, 0, DEVICES);
     tcase_add_test(tests, test_mc_stop_ends_a_search_in_standstill_not_homed);
     tcase_add_test(tests, test_home_direct_gives_the_actual_position);
     tcase_add_test(tests, test_home_direct_and_what_the_motor_cannot);
