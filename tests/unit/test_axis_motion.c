@@ -88,6 +88,7 @@ static void test_enable_after_the_shaft_was_turned_while_disabled(void)
         }
         bus.velocity_raw = 0;
         const double there = bench_info().actual_position;
+        bench_cycles(10); /* it is to rest for 20 ms */
         bench_enable();
         TEST_ASSERT_EQUAL_DOUBLE(there, bench_info().set_position);
     }

@@ -259,6 +259,7 @@ static void test_condition_follows_bus_power_state_and_error_code(void)
     c = cm1e_axis_condition(axis);
     TEST_ASSERT_TRUE(c.simulation && !c.communication && !c.ready_for_power_on);
     received = CM1E_OK;
+    bench_cycles(10); /* it was not seen, and is to rest for 20 ms */
     bench_enable();
     TEST_ASSERT_FALSE(cm1e_axis_condition(axis).ready_for_power_on); /* it is on */
     bus.error_code = 0x8611;
