@@ -10,7 +10,6 @@
 /* What the simulated servo does by itself; `scenario --measure` prints it for scenarios without faults. */
 #define SERVO_OVERSHOOT 0.002     /* of the maximum velocity, */
 #define SERVO_FILTER_S 1e-3       /* so much time of the maximum acceleration: it smooths the velocity, */
-#define SERVO_SPEED_COUNTS 300.0  /* and counts/s: targets are whole counts */
 #define COARSE_COUNTS 1000.0      /* counts/s: target velocities before firmware 1.3.3 */
 #define SERVO_GAIN 1.15           /* of the maximum acceleration, within GAIN_MS */
 #define SERVO_BANDWIDTH 500.0     /* rad/s, of its position loop */
@@ -260,17 +259,6 @@ static bool at_stop(const machine_axis_t *axis)
     return axis->spec->stops != 0 && fabs(axis->probe.position_counts) > STOP_COUNTS;
 }
 
-/** A motor that turns when it gets its torque is braked from its velocity, while its axis is Disabled still. Where an error
- *  comes in the same cycle, it has the torque for that ramp as for any ramp of ErrorStop (docs/SAFETY.md). */
-static bool is_braked_first(const machine_axis_t *axis, double velocity)
-{
-    const double sign = axis->spec->invert != 0 ? -1 : 1, shaft = sign * axis->probe.velocity_counts_per_s;
-    const double before = axis->seen.speeds[0]; /* what the drive has shown is a cycle older, and it may brake already */
-    const bool disabled = axis->info.state == CM1E_AXIS_DISABLED || axis->seen.fails_off;
-    return is_motor(axis) && disabled && axis->seen.set_velocity == 0 && velocity * shaft > 0 &&
-           fabs(velocity) < 1.02 * fmax(fabs(shaft), before) + SERVO_SPEED_COUNTS;
-}
-
 /** The set-point itself knows no tolerance but that of its numbers. */
 static void judge_set_point(run_t *run, machine_axis_t *axis)
 {
@@ -325,6 +313,8 @@ static void judge_gain(run_t *run, machine_axis_t *axis)
     const int window = cycles_of(run, GAIN_MS);
     const double speed = fabs(axis->probe.velocity_counts_per_s);
     memmove(seen->speeds + 1, seen->speeds, sizeof seen->speeds - sizeof seen->speeds[0]);
+    seen->shaft[1] = seen->shaft[0];
+    seen->shaft[0] = signed_speed(axis);
     seen->speeds[0] = fmax(speed, speed_held_back(axis));
     const double homing = is_homing(run, axis) && axis->seen.by_drive ? HOMING_ACCELERATION : 0;
     const double most = fmax(fmax(axis->spec->acceleration, axis->spec->deceleration), homing) * window *

@@ -27,6 +27,23 @@ static bool has_set_points(const machine_axis_t *axis)
     return axis->info.mode == CM1E_MODE_CSP || axis->info.mode == CM1E_MODE_CSV;
 }
 
+double signed_speed(const machine_axis_t *axis)
+{
+    return (axis->spec->invert != 0 ? -1 : 1) * axis->probe.velocity_counts_per_s;
+}
+
+bool is_braked_first(const machine_axis_t *axis, double velocity)
+{
+    const double *before = axis->seen.shaft, now = signed_speed(axis);
+    /* What the drive has shown is a cycle older, and it may brake already, or turn the motor round. Where no frame came, the
+     * simulator has not moved the shaft: the cycle before that counts. */
+    const double shown = before[now == before[0]], least = fmin(now, shown), most = fmax(now, shown);
+    const bool disabled = axis->info.state == CM1E_AXIS_DISABLED || axis->seen.fails_off;
+    return is_motor(axis) && disabled && axis->seen.set_velocity == 0 &&
+           (velocity > 0 ? most > 0 && velocity < 1.02 * most + SERVO_SPEED_COUNTS
+                         : least < 0 && velocity > 1.02 * least - SERVO_SPEED_COUNTS);
+}
+
 void judge_enable(run_t *run, machine_axis_t *axis)
 {
     const axis_spec_t *spec = axis->spec;

@@ -15,6 +15,7 @@
 enum { FIRST_ID = 40 /* explicit device ID of the first axis */, STRANGER_ID = 99, WIRED = 2 /* signals of a terminal */, SWITCHES = 2 /* behind them */,
         MODE_CML = 101, MODE_CMD = 120 /* as a bridge shows them */, BLOCK_ROOM = 2448, SPEEDS = 104, SPEEDS_SEEN = 64 };
 
+#define SERVO_SPEED_COUNTS 300.0 /* counts/s of its overshoot: targets are whole counts */
 #define SWITCH_COUNTS 200000.0 /* limit switches at a terminal, before the hard stops at 250,000 */
 
 /** A block of the program, by the table of all blocks. */
@@ -43,6 +44,7 @@ typedef struct instance {
 typedef struct witness {
     cm1e_axis_state_t state;
     double speeds[SPEEDS];                    /**< of the last cycles */
+    double shaft[2];                          /**< of the last two, counts/s in the direction of its axis */
     double set_velocity;                  /**< counts/s, of the set-point */
     int unmoved;                          /**< cycles since that was another one than 0 */
     double rest_at;                       /**< counts; where it came to rest */
@@ -236,6 +238,11 @@ void judge_move_load(const run_t *run, machine_axis_t *axis);
 
 /* ---- scenario_judge_enable.c ------------------------------------------------------------------------------------- */
 
+/** Counts/s of the shaft, in the direction of its axis. */
+double signed_speed(const machine_axis_t *axis);
+/** A motor that turns when it gets its torque is braked from its velocity, while its axis is Disabled still. Where an error
+ *  comes in the same cycle, it has the torque for that ramp as for any ramp of ErrorStop (docs/SAFETY.md). */
+bool is_braked_first(const machine_axis_t *axis, double velocity);
 /** MC_Power.Status is not TRUE before the motor rests. */
 void judge_enable(run_t *run, machine_axis_t *axis);
 /** Something that is not a motion has happened to it not long ago, and it comes back to its set-point. */
