@@ -175,7 +175,7 @@ static bool is_within(double difference, bounds_t bounds, double noise)
 
 /* Whether a cycle in which the velocity changes its sign keeps both limits: the axis brakes in it if its way leads on,
  * and accelerates already if that leads back. */
-static bool turns_within_limits(const cm1e_axis_t *axis, const from_t *next, double step)
+CM1E_RARE static bool turns_within_limits(const cm1e_axis_t *axis, const from_t *next, double step)
 {
     const cm1e_motion_limits_t *most = limits_of(axis);
     const differences_t made = differences(axis, next, step);

@@ -127,7 +127,7 @@ static void print_npy(const trace_t *trace, FILE *file)
 
 static void print_in_c_locale(const trace_t *trace, FILE *file, void (*print)(const trace_t *trace, FILE *file))
 {
-    c_locale_t locale;
+    c_locale_t locale = {0};
     const bool point = cm1e_c_locale_begin(&locale);
     print(trace, file);
     if (point)
