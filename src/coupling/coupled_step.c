@@ -177,7 +177,7 @@ static void begin_anew(cm1e_axis_t *axis)
     const cm1e_motion_limits_t asked = c->catch_up.asked;
     cm1e_phasing_stand(axis);
     const bool across = cm1e_coupling_settle(axis);
-    const master_trouble_t trouble = cm1e_coupling_look(axis, c->now);
+    const master_trouble_t trouble = cm1e_coupling_look_anew(axis);
     if (trouble && !(c->stopping && trouble == MASTER_STOPPING)) {
         (void)stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
         return;

@@ -243,6 +243,8 @@ cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e
 master_trouble_t cm1e_coupling_see(cm1e_axis_t *slave, follow_t *follow);
 /** Makes that view without advancing the masters. */
 master_trouble_t cm1e_coupling_look(cm1e_axis_t *slave, follow_t *follow);
+/** The same where the slave begins anew, but for a master that has gone on in this cycle already. */
+master_trouble_t cm1e_coupling_look_anew(cm1e_axis_t *slave);
 void cm1e_coupling_list_links(follow_t *follow);
 void cm1e_coupling_unlist_links(follow_t *follow);
 /** Removes the axis from all couplings, as a master and as a slave. @rt init */

@@ -327,11 +327,12 @@ static inline bool jumped(const link_t *link, const master_view_t *view)
     return fabs(view->counts - before->counts - way) > link->most_unexplained;
 }
 
-/* Whether the master has gone on in this cycle, and the slave has not: another master of it has begun anew meanwhile.
- * The slave still sees that way when it advances. */
+/* Whether the master has gone on in this cycle, and the slave, which begins anew, has not: another master of it has
+ * begun anew meanwhile. The slave still sees that way when it advances. */
 static bool is_ahead(const cm1e_axis_t *slave, const link_t *link, const master_view_t *view)
 {
-    return link->master->advanced && !slave->advanced && !jumped(link, view);
+    const cm1e_axis_t *master = link->master;
+    return master->advanced && !slave->advanced && !master->silence.began_anew && !jumped(link, view);
 }
 
 static bool stands(link_t *link)
@@ -367,7 +368,7 @@ static master_trouble_t trouble_with(cm1e_axis_t *slave, const link_t *link, mas
 
 /* Makes the view of every master. The positions count from the place where the slave began to follow. So a shift of
  * the coordinates of a master is no motion, and no count is lost however far the master goes. */
-static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool on_the_way)
+static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool on_the_way, bool anew)
 {
     master_trouble_t worst = MASTER_GOOD;
     for (int i = 0; i < follow->count; i++) {
@@ -382,7 +383,7 @@ static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool o
         view.counts = cm1e_position_minus(position, link->origin);
         if (i == 0 && (follow == slave->coupling->now || keeps_phase(slave, link)))
             add_phase(slave, link, &view);
-        if (!on_the_way && is_ahead(slave, link, &view))
+        if (anew && is_ahead(slave, link, &view))
             continue;
         const bool jump = on_the_way && jumped(link, &view);
         link->seen = view;
@@ -392,8 +393,9 @@ static inline master_trouble_t look(cm1e_axis_t *slave, follow_t *follow, bool o
     return worst;
 }
 
-master_trouble_t cm1e_coupling_look(cm1e_axis_t *slave, follow_t *follow) { return look(slave, follow, false); }
-master_trouble_t cm1e_coupling_see(cm1e_axis_t *slave, follow_t *follow) { return look(slave, follow, true); }
+master_trouble_t cm1e_coupling_look(cm1e_axis_t *slave, follow_t *follow) { return look(slave, follow, false, false); }
+master_trouble_t cm1e_coupling_see(cm1e_axis_t *slave, follow_t *follow) { return look(slave, follow, true, false); }
+master_trouble_t cm1e_coupling_look_anew(cm1e_axis_t *slave) { return look(slave, slave->coupling->now, false, true); }
 
 cm1e_error_t cm1e_coupling_link(cm1e_axis_t *slave, follow_t *follow, const cm1e_coupling_master_t *asked)
 {
