@@ -314,8 +314,8 @@ static void test_no_axis_depends_on_the_unit_of_length(void)
         for (int k = 0; k < UNITS_COUNT; k++)
             run_in(k, units[k], (int)seed_of(i));
     printf("%llu commands taken, %llu refused\n", taken, refused);
-    if (seeds_given())
-        return;
+    if (seeds_given() || slowness() > EFFORT_FULL)
+        return; /* all of them together have to reach this */
     TEST_ASSERT_TRUE(taken > refused);
     for (int state = 0; state < CM1E_AXIS_STATE_COUNT; state++)
         TEST_ASSERT_GREATER_THAN_MESSAGE(100, seen[state], cm1e_axis_state_name((cm1e_axis_state_t)state));

@@ -164,7 +164,7 @@ static void test_no_group_depends_on_the_unit_of_length(void)
         for (int k = 0; k < UNITS_COUNT; k++)
             run_in(k, units[k], (int)seed_of(i));
     printf("%llu commands taken, %llu refused, %llu cycles on a path\n", taken, refused, moved);
-    TEST_ASSERT_TRUE(seeds_given() || (taken > refused && moved > CYCLES));
+    TEST_ASSERT_TRUE(seeds_given() || slowness() > EFFORT_FULL || (taken > refused && moved > CYCLES));
 }
 
 /** What is inverted, and is told everything inverted, goes the same way. */
