@@ -20,19 +20,12 @@ double cbrt(double x)
     return ldexp((double)cbrtl(ldexp(part, exponent - 3 * third)), third);
 }
 
-const double units[UNITS_COUNT] = {1, 0x1p-24, 0x1p24, 0x1p-12};
+/* 1 first; then other powers of 64, so that roots change no digit either. */
+static const double units[UNITS_COUNT] = {1, 0x1p-24, 0x1p24, 0x1p-12};
 double in_units;
 
 static moment_t first[LONGEST], now;
 static int run, cycle, noted;
-
-void units_begin(int number, double size_of_unit)
-{
-    run = number;
-    in_units = size_of_unit;
-    cycle = noted = 0;
-    now = (moment_t){0};
-}
 
 bool mirrored(void) { return in_units < 0; }
 
@@ -105,3 +98,25 @@ double size(double base) { return base * fabs(in_units); }
 double decade(double low, double high) { return exp(uniform(log(low), log(high))); }
 
 double or_default(double base) { return one_in(2) ? 0 : size(base); }
+
+static void run_in(const units_program_t *program, int number, double unit, int seed)
+{
+    char name[40];
+    snprintf(name, sizeof name, "CM1E_TEST_SEED=%d", seed);
+    run = number;
+    in_units = unit;
+    cycle = noted = 0;
+    now = (moment_t){0};
+    chance_seed((uint64_t)seed);
+    program->begin();
+    axes_bench.run = name;
+    for (int i = 0; i < program->cycles; i++)
+        program->cycle();
+    axes_bench.run = NULL;
+}
+
+void units_compare(const units_program_t *program, int seed, bool mirror)
+{
+    for (int k = 0; k < (mirror ? 2 : UNITS_COUNT); k++)
+        run_in(program, k, !mirror ? units[k] : k ? -1 : 1, seed);
+}

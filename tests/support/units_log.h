@@ -21,13 +21,18 @@
 
 enum { UNITS_COUNT = 4, UNITS_NOTES = 24 };
 
-/** 1 first; then other powers of 64, so that roots change no digit either. */
-extern const double units[UNITS_COUNT];
-
 /** u in one revolution of a motor. */
 extern double in_units;
 
-void units_begin(int run, double size);
+/** A program of some cycles. */
+typedef struct units_program {
+    void (*begin)(void);
+    void (*cycle)(void);
+    int cycles;
+} units_program_t;
+
+/** Runs it with this seed in each of the units, or, as `mirror`, in one and its negative: all has to be as in the first. */
+void units_compare(const units_program_t *program, int seed, bool mirror);
 
 bool mirrored(void);
 

@@ -144,25 +144,18 @@ static void one_cycle(void)
     units_cycle();
 }
 
-static void run_in(int run, double unit, int seed)
+static void begin(void)
 {
-    char name[40];
-    snprintf(name, sizeof name, "CM1E_TEST_SEED=%d", seed);
-    units_begin(run, unit);
-    chance_seed((uint64_t)seed);
     memset(ids, 0, sizeof ids);
     make_machine();
-    axes_bench.run = name;
-    for (int i = 0; i < CYCLES; i++)
-        one_cycle();
-    axes_bench.run = NULL;
 }
+
+static const units_program_t random_program = {begin, one_cycle, CYCLES};
 
 static void test_no_group_depends_on_the_unit_of_length(void)
 {
     for (int i = 0; i < seed_count(PROGRAMS); i++)
-        for (int k = 0; k < UNITS_COUNT; k++)
-            run_in(k, units[k], (int)seed_of(i));
+        units_compare(&random_program, (int)seed_of(i), false);
     printf("%llu commands taken, %llu refused, %llu cycles on a path\n", taken, refused, moved);
     TEST_ASSERT_TRUE(seeds_given() || slowness() > EFFORT_FULL || (taken > refused && moved > CYCLES));
 }
@@ -172,8 +165,7 @@ static void test_no_group_depends_on_the_sign_of_the_unit(void)
 {
     mirrors = true;
     for (int i = 0; i < seed_count(PROGRAMS); i++)
-        for (int k = 0; k < 2; k++)
-            run_in(k, k ? -1 : 1, (int)seed_of(i));
+        units_compare(&random_program, (int)seed_of(i), true);
 }
 
 int main(void)
