@@ -354,8 +354,9 @@ static void judge_still(run_t *run, machine_axis_t *axis)
     if (switched && axis->probe.torque_on && fabs(axis->probe.velocity_counts_per_s) > CAUGHT_SPEED)
         seen->caught = 0;
     seen->torque_on = axis->probe.torque_on;
-    /* In CSV a drive that hears nothing goes on with what the position loop has asked for last (docs/SAFETY.md). */
-    const bool goes_on = by_velocity(axis->spec) && run->bad[axis->network] > 0;
+    /* In CSV a drive that hears nothing goes on with what the position loop has asked for last (docs/SAFETY.md), also in a
+     * pause of the host. */
+    const bool goes_on = by_velocity(axis->spec) && (run->bad[axis->network] > 0 || seen->stalled == AFTER_STALL);
     /* In CSV a position that is not true moves the motor at the speed of the position loop (docs/SAFETY.md). */
     const bool deceived = by_velocity(axis->spec) && seen->caught < cycles_of(run, QUIET_MS);
     /* A target that was lost on its way out is not the place of rest until a frame arrives again, which has it too. */
