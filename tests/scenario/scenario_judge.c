@@ -439,8 +439,10 @@ static bool is_groundless(const run_t *run, const machine_axis_t *axis)
                         error == CM1E_ERROR_BUS_CLOCKS || error == CM1E_ERROR_AXIS_OFFLINE;
     const bool of_drive = error <= CM1E_ERROR_DRIVE_FAULT && error >= CM1E_ERROR_DRIVE_KEEPS_TORQUE &&
                           axis->spec->stops == 0; /* a motor that presses against its stop is overloaded */
-    /* Without any fault, a motor that nothing holds follows its set-point. */
-    if (error == CM1E_ERROR_AXIS_LAG && axis->spec->stops == 0 && run->scenario->fault_count == 0)
+    /* Without any fault, a motor that nothing holds follows its set-point, but where its program has led it back from CMD
+     * or CPIO by CML, and insisted (docs/BRIDGE.md). */
+    const bool follows = axis->spec->stops == 0 && (axis->probe.broken_rules & CM1E_SIM_MODE_NO_WAY) == 0;
+    if (error == CM1E_ERROR_AXIS_LAG && follows && run->scenario->fault_count == 0)
         return true;
     return (of_bus || of_drive) && run->phase == PHASE_PROGRAM && !fault_explains(run, axis, of_bus);
 }
