@@ -76,21 +76,17 @@ void put(instance_t *fb, const char *name, double value)
     if (!m)
         return;
     void *place = fb->memory + m->offset;
-    const LREAL real = value;
-    const TIME time = (TIME)value;
-    const INT number = (INT)value;
-    const int choice = (int)value;
-    switch (m->type) {
+    switch (m->type) { /* a number that one type does not have may be meant for another one */
     case BLOCK_BOOL: *(BOOL *)place = value != 0; break;
     case BLOCK_INT:
     case BLOCK_UINT:
-    case BLOCK_WORD: memcpy(place, &number, sizeof number); break;
-    case BLOCK_LREAL: memcpy(place, &real, sizeof real); break;
-    case BLOCK_TIME: memcpy(place, &time, sizeof time); break;
+    case BLOCK_WORD: memcpy(place, &(INT){(INT)value}, sizeof(INT)); break;
+    case BLOCK_LREAL: memcpy(place, &value, sizeof value); break;
+    case BLOCK_TIME: memcpy(place, &(TIME){(TIME)value}, sizeof(TIME)); break;
     case BLOCK_DINT:
     case BLOCK_UDINT:
     case BLOCK_DWORD:
-    case BLOCK_ENUM: memcpy(place, &choice, sizeof choice); break;
+    case BLOCK_ENUM: memcpy(place, &(int){(int)value}, sizeof(int)); break;
     case BLOCK_STRING:
     case BLOCK_STRUCT:
     case BLOCK_POINTER: bench_fail("%s.%s cannot be put", name_of(fb), name);
