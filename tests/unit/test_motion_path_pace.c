@@ -135,10 +135,19 @@ static void test_a_stop_on_a_circle_brakes_harder_the_slower_it_is(void)
     }
 }
 
+/** s; that a stop takes from here. The path goes on as before. */
+static double time_of_stop(void)
+{
+    static driven_t moment;
+    moment = driven;
+    const double time_s = stopped_after();
+    driven = moment;
+    return time_s;
+}
+
 /** At all moments of paths with many bends, with the time that the weakest axis would need on a line. */
 static void test_stops_in_bends_take_little_longer_than_on_a_line(void)
 {
-    static driven_t moment;
     double stops_s = 0, lines_s = 0;
     for (int i = 0; i < PATHS; i++) {
         cm1e_path_config_t config = plain_config(3, 3, 500, 3000, 60000);
@@ -148,14 +157,12 @@ static void test_stops_in_bends_take_little_longer_than_on_a_line(void)
         do {
             for (int k = 0; k < 7 && driven.now.phase == CM1E_PATH_MOVING; k++)
                 step_path();
-            moment = driven;
             const cm1e_motion_state_t start = {0, driven.now.path_velocity, driven.now.path_acceleration};
             cm1e_profile_t line;
             TEST_ASSERT_EQUAL(CM1E_OK, cm1e_profile_to_velocity(
                                            &line, &start, 0, &(cm1e_motion_limits_t){500, 1500, 1500, 60000}));
-            stops_s += stopped_after();
+            stops_s += time_of_stop();
             lines_s += line.duration_s;
-            driven = moment;
             step_path();
         } while (driven.now.phase == CM1E_PATH_MOVING);
     }
@@ -260,7 +267,6 @@ static void test_lines_with_other_limits_take_hardly_longer_than_the_better_of_t
 /** With much jerk a stop in arcs may be of more stages than a profile has room for: the best of them are found. */
 static void test_stops_of_many_stages_take_little_longer_than_on_a_line(void)
 {
-    static driven_t moment;
     int stops = 0, slow = 0;
     for (int i = 0; i < PATHS; i++) {
         cm1e_path_config_t config = plain_config(3, 3, 500, 3000, 1e6);
@@ -270,11 +276,9 @@ static void test_stops_of_many_stages_take_little_longer_than_on_a_line(void)
         do {
             for (int k = 0; k < 3 && driven.now.phase == CM1E_PATH_MOVING; k++)
                 step_path();
-            moment = driven;
             const double line_s = driven.now.path_velocity / 1500 + 1500 / 1e6;
-            slow += stopped_after() > 1.3 * line_s + 2 * config.cycle_s;
+            slow += time_of_stop() > 1.3 * line_s + 2 * config.cycle_s;
             stops++;
-            driven = moment;
             step_path();
         } while (driven.now.phase == CM1E_PATH_MOVING);
     }
