@@ -376,28 +376,35 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis)
 
 /* The correction of the position loop. While inputs are missing the last correction stays, and an offline ramp of
  * ErrorStop has none. When the actual velocity contradicts the actual position, the last correction stays too at first,
- * and then there is none. Else an actual position that stays the same would drive the motor faster and faster. So would
- * one from before a pause, in which the motor has gone on: the last correction stays in that cycle too. */
-static double loop_velocity(cm1e_axis_t *axis)
+ * and then there is none. Else an actual position that stays the same would drive the motor faster and faster. */
+static double loop_velocity(const cm1e_axis_t *axis, double lag)
 {
-    if (axis->silence.resumed == RESUMED_FROM_PAUSE)
-        return axis->setpoint.loop_velocity;
     if (cm1e_drive_contradicts_itself(&axis->drive))
-        axis->setpoint.loop_velocity = 0.0;
-    else if (axis->drive.feedback.fresh && axis->drive.actual.contradictions == 0)
-        axis->setpoint.loop_velocity = csv_position_gain * cm1e_position_minus(axis->setpoint.position,
-                                                                               axis_actual(axis));
-    else if (axis->state == CM1E_AXIS_ERROR_STOP)
-        axis->setpoint.loop_velocity = 0.0;
-    return axis->setpoint.loop_velocity;
+        return 0.0;
+    if (axis->drive.feedback.fresh && axis->drive.actual.contradictions == 0)
+        return csv_position_gain * lag;
+    return axis->state == CM1E_AXIS_ERROR_STOP ? 0.0 : axis->setpoint.loop_velocity;
+}
+
+static double lag(const cm1e_axis_t *axis) { return cm1e_position_minus(axis->setpoint.position, axis_actual(axis)); }
+
+/* The actual position is from before the pause, in which the motor has gone on with the set velocity and the last
+ * correction. So the lag of then is less what that correction has made up. Else that correction would stay for as long
+ * as every cycle is late, and the lag, which nobody looks at, would grow. */
+void cm1e_axis_loop_after_pause(cm1e_axis_t *axis, double pause_s)
+{
+    const double step = axis->setpoint.velocity * axis->position.scale * axis->cycle_s;
+    axis->setpoint.loop_velocity = loop_velocity(axis, lag(axis) + step - axis->setpoint.loop_velocity * pause_s);
 }
 
 /* The target velocity with the correction, at most the maximum velocity. Motors stay far below 2^31 counts/s. */
 static int32_t target_velocity(cm1e_axis_t *axis)
 {
     const double most = axis->limits.system.velocity * fabs(axis->position.scale) + axis->backlash.velocity;
+    if (axis->silence.resumed != RESUMED_FROM_PAUSE)
+        axis->setpoint.loop_velocity = loop_velocity(axis, lag(axis));
     const double velocity = axis->setpoint.velocity * axis->position.scale + cm1e_axis_backlash_velocity(axis) +
-                            loop_velocity(axis);
+                            axis->setpoint.loop_velocity;
     return (int32_t)round(larger(-most, smaller(velocity, most)));
 }
 

@@ -15,7 +15,8 @@
  *
  * A pause: frames were not sent, because the work of a cycle or a wake-up took whole cycles too long. In CSP the motor
  * has stopped at its last target; in CSV it has gone on with its last velocity. The motion begins anew from rest, or
- * from where the motor must be now. Stops and ramps of errors end where they are.
+ * from where the motor must be now. Stops and ramps of errors end where they are. Set-points are those of planned
+ * cycles: so a pause counts in whole cycles, wherever in its cycle it ends.
  */
 #include "axis/axis_pause.h"
 #include "axis/axis_backlash.h"
@@ -108,6 +109,8 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
     axis->silence.resumed = RESUMED_FROM_PAUSE;
     if (axis_follows(axis))
         axis->coupling_hooks->resume_masters(axis, pause_ns);
+    if (goes_on && axis->power.energized && axis_acts(axis))
+        cm1e_axis_loop_after_pause(axis, (double)pause_ns * 1e-9);
     if (!goes_on)
         cm1e_axis_backlash_stop(axis);
     if (!set_points_move(axis))

@@ -192,5 +192,7 @@ void cm1e_axis_motion_step(cm1e_axis_t *axis);
  *  made the set-point of the cycle. */
 void cm1e_axis_motion_turned(cm1e_axis_t *axis, bool made);
 void cm1e_axis_write_set_point(cm1e_axis_t *axis);
+/** In CSV, in the first cycle after a pause, before the set-point is where the motor has run on to. */
+void cm1e_axis_loop_after_pause(cm1e_axis_t *axis, double pause_s);
 
 #endif

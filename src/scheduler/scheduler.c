@@ -141,16 +141,16 @@ static const int64_t watchdog_ns = 100 * MS_IN_NS, longest_late_ns = 2000 * MS_I
 /** After a few missed cycles the motor has hardly slowed down; after more it is at rest (CSP). After the time of the
  *  watchdogs no motion begins again by itself, whether a drive has one or not: somebody may have resumed a program that
  *  was suspended for hours. Nor does one go on for ever that gets no further, because every cycle is late. */
-static void after_missed(cm1e_axis_t *axis, int64_t missed, int64_t silence_ns, int64_t late_ns)
+static void after_missed(cm1e_scheduler_t *s, cm1e_axis_t *axis, int64_t missed, int64_t silence_ns)
 {
     if (missed > CM1E_AXIS_RIDDEN_OUT_CYCLES)
-        cm1e_axis_after_pause(axis, silence_ns);
+        cm1e_axis_after_pause(axis, missed * s->cycle_time_ns);
     else
         cm1e_axis_hold_cycle(axis, missed);
     if (silence_ns >= watchdog_ns)
         cm1e_axis_stood_still(axis, silence_ns);
-    if (late_ns >= longest_late_ns)
-        cm1e_axis_ran_late(axis, late_ns);
+    if (s->late_ns >= longest_late_ns)
+        cm1e_axis_ran_late(axis, s->late_ns);
 }
 
 static void set_outputs(cm1e_scheduler_t *s)
@@ -161,7 +161,7 @@ static void set_outputs(cm1e_scheduler_t *s)
     s->late_ns = missed > 0 ? s->late_ns + (silence_ns < watchdog_ns ? now_ns - s->sent_ns : watchdog_ns) : 0;
     s->sent_ns = now_ns;
     for (uint32_t i = 0; i < s->axis_count && missed > 0; i++)
-        after_missed(s->axes[i], missed, silence_ns, s->late_ns);
+        after_missed(s, s->axes[i], missed, silence_ns);
     if (s->heard_apart)
         cm1e_axis_meet(s->axes, s->axis_count);
     for (uint32_t i = 0; i < s->axis_count; i++)

@@ -1,15 +1,20 @@
 /**
  * Every cycle is late, and stays so: the work of a cycle takes longer than its time. No set-point moves in a late cycle, so
  * no motion, no ramp and no enabling ends. After two seconds every axis with torque is in ErrorStop, says why, and has
- * none.
+ * none. Until then the position loop of an axis in CSV goes on.
  */
+#include <math.h>
 #include <stdlib.h>
 
 #include "cm1e/sim.h"
 #include "machine.h"
 
 #define MS INT64_C(1000000)
-enum { ENABLED_AT = 3, MOVED_AT = 60, LATE_AT = 120, ENOUGH_MS = 2300 };
+#define COUNTS 1000.0 /* per u */
+enum { ENABLED_AT = 3, MOVED_AT = 60, LATE_AT = 120, ENOUGH_MS = 2300, SETTLED_MS = 500 };
+
+static const double velocity = 10, acceleration = 50; /* u/s, u/s2 */
+enum { IN_VELOCITY_AT = MOVED_AT + 200 };
 
 typedef enum deed { DEED_NONE = 0, DEED_POWER_OFF, DEED_STOP, DEED_HOME, DEEDS } deed_t;
 
@@ -20,8 +25,11 @@ typedef struct run {
     MC_Stop_t stop;
     MC_Home_t home;
     deed_t deed;                          /**< what the program does while the cycles are late */
-    int late_at, late_ms, cycles, late_cycles;
+    int late_at, late_ms, enough_ms, cycles, late_cycles;
     bool told;                            /**< the axis is in ErrorStop with the words of this error */
+    double lag;                           /**< u */
+    double ahead, left;                   /**< u, of v * t: of the set-point at first, and the largest change since */
+    void (*program)(void *context);
     cm1e_sim_probe_t probe;
 } run_t;
 
@@ -32,6 +40,7 @@ static void look(run_t *run)
     cm1e_axis_read(run->machine.axis[0], &info);
     cm1e_axis_error_text(run->machine.axis[0], text, sizeof text);
     cm1e_sim_probe(cm1e_bus_segment(run->machine.bus), 1, &run->probe);
+    run->lag = info.position_lag;
     run->told = info.state == CM1E_AXIS_ERROR_STOP && strstr(text, "every cycle ");
 }
 
@@ -54,25 +63,32 @@ static void program(void *context)
         return;
     run->late_cycles++;
     cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + run->late_ms * MS + MS / 2);
-    if (run->late_cycles * (run->late_ms + 1) >= ENOUGH_MS)
+    if (run->late_cycles * (run->late_ms + 1) >= run->enough_ms)
         cm1e_scheduler_stop(run->machine.scheduler);
+}
+
+static run_t run_late(run_t run)
+{
+    machine_open(&run.machine);
+    AXIS_REF_t *axis = &run.machine.axis[0];
+    run.power = (MC_Power_t){.Axis = axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
+    run.turn = (MC_MoveVelocity_t){.Axis = axis, .Velocity = velocity, .Acceleration = acceleration};
+    run.stop = (MC_Stop_t){.Axis = axis};
+    run.home = (MC_Home_t){.Axis = axis};
+    machine_add(&run.machine, "turn", 0, 0, run.program, &run);
+    machine_run(&run.machine, run.program == program ? 0 : 700 * MS);
+    machine_close(&run.machine);
+    return run;
 }
 
 static void is_late(cm1e_mapping_t mapping, deed_t deed, int late_at, int late_ms)
 {
-    run_t run = {.machine = {.axis_count = 1, .mapping = mapping}, .deed = deed, .late_at = late_at, .late_ms = late_ms};
-    machine_open(&run.machine);
-    AXIS_REF_t *axis = &run.machine.axis[0];
-    run.power = (MC_Power_t){.Axis = axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
-    run.turn = (MC_MoveVelocity_t){.Axis = axis, .Velocity = 2};
-    run.stop = (MC_Stop_t){.Axis = axis};
-    run.home = (MC_Home_t){.Axis = axis};
-    machine_add(&run.machine, "turn", 0, 0, program, &run);
-    machine_run(&run.machine, 0);
+    const run_t run = run_late((run_t){.machine = {.axis_count = 1, .mapping = mapping}, .program = program,
+                                       .deed = deed, .late_at = late_at, .late_ms = late_ms,
+                                       .enough_ms = ENOUGH_MS});
     ck_assert_msg(!run.probe.torque_on && (run.told || deed == DEED_POWER_OFF),
                   "mapping %d, deed %d, from cycle %d on by %d ms: torque %d, told %d", mapping, deed, late_at, late_ms,
                   run.probe.torque_on, run.told);
-    machine_close(&run.machine);
 }
 
 START_TEST(test_where_every_cycle_is_late_no_axis_keeps_its_torque)
@@ -88,11 +104,63 @@ START_TEST(test_where_every_cycle_is_late_no_axis_keeps_its_torque)
 }
 END_TEST
 
+static void goes_on(int at, int late_ms)
+{
+    const run_t run = run_late((run_t){.machine = {.axis_count = 1, .mapping = CM1E_MAPPING_CSV}, .program = program,
+                                       .late_at = at, .late_ms = late_ms, .enough_ms = SETTLED_MS});
+    const double speed = run.probe.velocity_counts_per_s / COUNTS;
+    const double lag = run.lag + velocity * 1e-3; /* the next set-point is where the motor is now */
+    ck_assert_msg(fabs(speed - velocity) <= 0.01 * velocity && fabs(lag) <= 3 / COUNTS,
+                  "from cycle %d on by %d ms: %g u/s, lag %g u", at, late_ms, speed, lag);
+}
+
+/** At the end of a ramp the motor is not where its set-point is. */
+START_TEST(test_the_position_loop_of_csv_goes_on_in_late_cycles)
+{
+    static const int late_ms[] = {3, 4, 5, 9, 13};
+    for (size_t i = 0; i < sizeof late_ms / sizeof late_ms[0]; i++)
+        for (int at = IN_VELOCITY_AT - 10; at < IN_VELOCITY_AT + 10; at++)
+            goes_on(at, late_ms[i]);
+}
+END_TEST
+
+/** Every tenth cycle takes 5.9 ms. u: by how much the set-point has left v * t until now. */
+static void pause_now_and_then(void *context)
+{
+    run_t *run = context;
+    cm1e_clock_t *clock = cm1e_bus_clock(run->machine.bus);
+    run->cycles++;
+    run->power.Enable = run->cycles >= ENABLED_AT;
+    MC_Power(&run->power);
+    run->turn.Execute = run->power.Status && run->cycles >= MOVED_AT;
+    MC_MoveVelocity(&run->turn);
+    if (run->cycles < IN_VELOCITY_AT + 50 || run->cycles % 10 != 0)
+        return;
+    cm1e_axis_info_t info = {0};
+    cm1e_axis_read(run->machine.axis[0], &info);
+    const double ahead = info.set_position - velocity * (double)cm1e_clock_now(clock) * 1e-9;
+    if (run->late_cycles++ == 0)
+        run->ahead = ahead;
+    run->left = fmax(run->left, fabs(ahead - run->ahead));
+    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + 5900 * MS / 1000);
+}
+
+START_TEST(test_a_pause_of_csv_that_ends_within_a_cycle_shifts_the_set_point_by_whole_cycles)
+{
+    const run_t run = run_late((run_t){.machine = {.axis_count = 1, .mapping = CM1E_MAPPING_CSV},
+                                       .program = pause_now_and_then});
+    ck_assert_int_gt(run.late_cycles, 20);
+    ck_assert_msg(run.left < 1e-6, "the set-point has left its course by %g u", run.left);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("cycles that are late for ever");
     TCase *cases = tcase_create("late");
     tcase_set_timeout(cases, 60);
+    tcase_add_test(cases, test_the_position_loop_of_csv_goes_on_in_late_cycles);
+    tcase_add_test(cases, test_a_pause_of_csv_that_ends_within_a_cycle_shifts_the_set_point_by_whole_cycles);
     tcase_add_test(cases, test_where_every_cycle_is_late_no_axis_keeps_its_torque);
     suite_add_tcase(suite, cases);
     SRunner *runner = srunner_create(suite);
