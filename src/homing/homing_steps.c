@@ -210,10 +210,13 @@ static void relieve_cycle(cm1e_axis_t *axis)
     press_on(axis, 0.0);
 }
 
+/* Below the TorqueLimit of a search for a switch, torque carries a load. */
 static bool presses_by_torque(const cm1e_axis_t *axis)
 {
-    const double limit = axis->homing->stepping.step.torque_limit;
-    return limit > 0.0 && fabs(torque_percent(axis)) > 0.5 * limit;
+    const stepping_t *s = &axis->homing->stepping;
+    const double limit = s->step.torque_limit;
+    const bool means_a_stop = !step_by_switch(s->step.kind) || s->outcome == CM1E_ERROR_AXIS_STEP_TORQUE;
+    return means_a_stop && limit > 0.0 && fabs(torque_percent(axis)) > 0.5 * limit;
 }
 
 /* Whether the motor presses against something: a free motor is never so far from a set-point at rest. */

@@ -205,6 +205,33 @@ START_TEST(test_mc_stop_ends_a_search_in_standstill_not_homed)
 }
 END_TEST
 
+/** The torque that carries a load does not press against anything, also where it is more than half of TorqueLimit. */
+START_TEST(test_a_search_for_a_switch_that_ends_leaves_a_load_where_it_is)
+{
+    begin(_i / 2);
+    simulate(_i % 2 ? "load 1 0.05" : "load 1 -0.05");
+    cycles(500);
+    MC_StepAbsoluteSwitch_t find = {.Axis = &reference, .Execute = TRUE, .Direction = mcPositiveDirection,
+                                    .Velocity = 0.1, .SwitchMode = mcRisingEdge, .TorqueLimit = 90.0};
+    MC_Stop_t stop = {.Axis = &reference, .Deceleration = 1.0};
+    double from = NAN;
+    for (int n = 0; n < 3000 && !stop.Done; n++) {
+        inputs();
+        MC_StepAbsoluteSwitch(&find);
+        stop.Execute = n > 1000;
+        MC_Stop(&stop);
+        outputs();
+        if (isnan(from) && n > 1000 && info().set_velocity == 0.0)
+            from = info().set_position;
+    }
+    ck_assert_msg(stop.Done && find.CommandAborted, "%s", text());
+    ck_assert_msg(fabs(info().actual_torque) > 45.0, "the load takes %.1f %%", info().actual_torque);
+    cycles(300);
+    ck_assert_msg(fabs(info().set_position - from) < 1e-9, "it went on by %g u", info().set_position - from);
+    close_segment();
+}
+END_TEST
+
 /** The motor is beside its set-point, by a load that has just come: what is actual in that cycle gets SetPosition. */
 START_TEST(test_home_direct_gives_the_actual_position)
 {
@@ -336,6 +363,7 @@ int main(void)
     tcase_add_loop_test(tests, test_switch_then_hard_stop_then_away, 0, DEVICES);
     tcase_add_loop_test(tests, test_block_does_not_go_on_pushing, 0, DEVICES);
     tcase_add_loop_test(tests, test_end_of_a_step_that_presses_without_lag, 0, DEVICES);
+    tcase_add_loop_test(tests, test_a_search_for_a_switch_that_ends_leaves_a_load_where_it_is, 0, 2 * DEVICES);
     tcase_add_test(tests, test_mc_stop_ends_a_search_in_standstill_not_homed);
     tcase_add_test(tests, test_home_direct_gives_the_actual_position);
     tcase_add_test(tests, test_home_direct_and_what_the_motor_cannot);
