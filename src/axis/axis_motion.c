@@ -389,12 +389,14 @@ static double loop_velocity(const cm1e_axis_t *axis, double lag)
 static double lag(const cm1e_axis_t *axis) { return cm1e_position_minus(axis->setpoint.position, axis_actual(axis)); }
 
 /* The actual position is from before the pause, in which the motor has gone on with the set velocity and the last
- * correction. So the lag of then is less what that correction has made up. Else that correction would stay for as long
- * as every cycle is late, and the lag, which nobody looks at, would grow. */
+ * correction. So the lag of then is less what that correction has made up, which is all of it at most: a motor that a
+ * long pause has taken beyond is not known here. Without this the last correction would stay for as long as every cycle
+ * is late, and the lag would grow. */
 void cm1e_axis_loop_after_pause(cm1e_axis_t *axis, double pause_s)
 {
     const double step = axis->setpoint.velocity * axis->position.scale * axis->cycle_s;
-    axis->setpoint.loop_velocity = loop_velocity(axis, lag(axis) + step - axis->setpoint.loop_velocity * pause_s);
+    const double made_up = axis->setpoint.loop_velocity * smaller(pause_s, 1.0 / csv_position_gain);
+    axis->setpoint.loop_velocity = loop_velocity(axis, lag(axis) + step - made_up);
 }
 
 /* The target velocity with the correction, at most the maximum velocity. Motors stay far below 2^31 counts/s. */

@@ -285,6 +285,26 @@ static void test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit(void)
     }
 }
 
+/** A motor 50 counts ahead of its set-point turns slower by 1000 counts/s; after a long pause that is no reason for more. */
+static void test_correction_by_velocity_does_not_grow_with_the_pause(void)
+{
+    for (int64_t pause_ns = 4000000; pause_ns <= 40000000000; pause_ns *= 10) {
+        by_velocity_within(0.0);
+        bench_move_velocity(2.0);
+        bench_cycles(1000);
+        for (int n = 0; n < 10; n++) {
+            csv_shaft += 5; /* gently, as no contradiction to its velocity */
+            bench_cycles(1);
+        }
+        TEST_ASSERT_INT32_WITHIN(200, 99200, bus.target_velocity_raw);
+        bench_inputs();
+        cm1e_axis_after_pause(axis, pause_ns);
+        bench_outputs();
+        bench_inputs(); /* the bus takes the outputs */
+        TEST_ASSERT_INT32_WITHIN(1100, 100000, bus.target_velocity_raw);
+    }
+}
+
 static void turn_slowly(cm1e_bus_t *motor) { motor->velocity_raw = 10000; } /* 0.2 u/s */
 
 /** After a pause in an acceleration, in CSP. The motor is two cycles behind the set-point: of a set-point with 2.025 u/s
@@ -569,6 +589,7 @@ int main(void)
     RUN_TEST(test_bus_trouble_while_moving_by_velocity_ramps_down_blindly);
     RUN_TEST(test_a_motor_that_was_offline_in_the_ramp_brakes_from_where_it_is);
     RUN_TEST(test_a_motion_by_velocity_goes_on_evenly_after_a_silence);
+    RUN_TEST(test_correction_by_velocity_does_not_grow_with_the_pause);
     RUN_TEST(test_motion_that_a_pause_takes_beyond_a_limit_names_that_limit);
     RUN_TEST(test_motor_ahead_after_a_pause_is_judged_by_the_speed_that_it_had);
     RUN_TEST(test_the_time_to_brake_ends_with_the_torque);
