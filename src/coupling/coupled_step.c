@@ -36,7 +36,9 @@ static void after_set_point(cm1e_axis_t *axis, const from_t *f)
     if (axis->superimposed.id)
         cm1e_axis_superimposed_after(axis);
     show_synchronizing(axis);
-    cm1e_axis_set_reached(axis, !c->catch_up.on && c->now->in_step && coupling_sees_all(c->now));
+    const bool in_step = !c->catch_up.on && c->now->in_step;
+    c->was_in_step |= in_step;
+    cm1e_axis_set_reached(axis, in_step && coupling_sees_all(c->now));
     if (axis->setpoint.reached && axis->commands.waiting.count > 0 &&
         (!c->now->waits_for_end || c->end_of_profile || c->now->cam.left != 0.0)) {
         const from_t from = from_base(axis);
@@ -157,7 +159,7 @@ void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *fro
     cm1e_coupling_await_nothing(axis);
     cm1e_coupling_list_links(follow);
     c->now = follow;
-    c->end_of_profile = c->stopping = c->due = false;
+    c->end_of_profile = c->stopping = c->due = c->was_in_step = false;
     cm1e_catch_up_begin(axis, from, asked, rule_of(c->now->to_position), ALL_TOGETHER);
     cm1e_axis_set_source(axis, &cm1e_source_coupling);
     if (!followed)

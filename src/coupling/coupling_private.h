@@ -177,6 +177,7 @@ typedef struct coupling {
     bool due;                      /**< the awaited command begins in this cycle */
     bool at_end;                   /**< the coupling in preparation waited for that end of the profile */
     bool left_behind;              /**< a master on another bus went on while the slave was silent */
+    bool was_in_step;              /**< it was in step at least once since this coupling began */
     bool ordinary;                 /**< all cycles are decided ahead on these courses of the slave and of its master */
     uint32_t course, masters_course;
     follow_t *awaited;             /**< coupling of the first waiting command, if it begins at a place of its master

@@ -67,7 +67,7 @@ bool cm1e_coupling_follows_to_the_end(cm1e_axis_t *axis, master_trouble_t troubl
 static bool gets_in_step(const cm1e_axis_t *axis)
 {
     const catch_up_t *catch_up = &axis->coupling->catch_up;
-    return axis->setpoint.synchronizing || (catch_up->on && !catch_up->made_up);
+    return !axis->coupling->was_in_step || (catch_up->on && !catch_up->made_up);
 }
 
 /* u/s2 of the slave: its deceleration if its master is braked too. 0: the master is not. */
