@@ -98,6 +98,9 @@ typedef struct coupling_function {
     /** The bounds of the slave's motion while its only master is on this course; no bound of jerk: infinite. false:
      *  they are not known ahead. */
     bool (*bounds)(const cm1e_axis_t *axis, const follow_t *follow, const course_t *master, cm1e_motion_bounds_t *most);
+    /** u/s2: the deceleration of the only master, from `gentle` to `hard`, that lets the slave brake no harder than it
+     *  may until the master stands. NULL: `gentle`, which the steepest place allows, because all are alike. */
+    double (*braking)(const cm1e_axis_t *axis, const follow_t *follow, double gentle, double hard);
 } coupling_function_t;
 
 /** The catch-up: difference to the coupling function, in the frame that moves with it; u. */

@@ -3,8 +3,8 @@
  *
  * With keep_ratio the slave, in ErrorStop, follows its master to standstill. Either the master has failed by itself,
  * and the slave follows its ramp; or the slave would break a limit of its own, and both brake. In the latter case the
- * master brakes no harder than the slave can follow. So the braking begins a cycle before the limit, while the slave
- * can still follow. If it cannot follow, it brakes alone.
+ * master brakes no harder than the slave can follow, on the way that is left. So the braking begins a cycle before the
+ * limit, while the slave can still follow. If it cannot follow, it brakes alone.
  */
 #include <math.h>
 #include <string.h>
@@ -121,6 +121,34 @@ guard_t cm1e_coupling_before_braking(const cm1e_axis_t *axis, const from_t *f, f
     return cm1e_axis_guard(axis, next, false);
 }
 
+/* u/s2 of the master: with which the slave can follow at the steepest place of its function. */
+static double gentle_braking(const cm1e_axis_t *axis)
+{
+    const follow_t *follow = axis->coupling->now;
+    return braking(axis) / follow->function->steepest(axis, follow, 0);
+}
+
+/* u/s2 of the master: with which it can follow on the way that is left, at most `hard`. */
+static double braking_on_way(const cm1e_axis_t *axis, double hard)
+{
+    const coupling_t *c = axis->coupling;
+    const double gentle = gentle_braking(axis);
+    return c->catch_up.on || !c->now->function->braking ? gentle
+                                                        : c->now->function->braking(axis, c->now, gentle, hard);
+}
+
+/* u/s2 of the master: with which all slaves that keep their ratio can follow it, but at least what this one can follow
+ * anywhere. */
+static double braking_with_slaves(const cm1e_axis_t *axis, const cm1e_axis_t *master)
+{
+    const double hard = master->limits.emergency.deceleration;
+    double all = hard;
+    for (const link_t *link = master->followed->slaves; link; link = link->next)
+        if (in_force(link) && braking(link->slave) > 0.0 && !gets_in_step(link->slave))
+            all = fmin(all, braking_on_way(link->slave, hard));
+    return fmax(gentle_braking(axis), all);
+}
+
 void cm1e_coupling_keep_ratio(cm1e_axis_t *axis, guard_t broken)
 {
     coupling_t *c = axis->coupling;
@@ -131,8 +159,10 @@ void cm1e_coupling_keep_ratio(cm1e_axis_t *axis, guard_t broken)
         broken = limit_ahead(axis, deceleration);
     if (!broken.limit)
         return;
-    c->stopping = !gets_in_step(axis);
-    fail_with(c->now->links[0].master, axis,
-              c->stopping ? deceleration / c->now->function->steepest(axis, c->now, 0) : INFINITY);
+    cm1e_axis_t *master = c->now->links[0].master;
+    const bool in_step = !gets_in_step(axis);
+    const double of_master = in_step ? braking_with_slaves(axis, master) : INFINITY;
+    c->stopping = in_step;
+    fail_with(master, axis, of_master);
     cm1e_axis_guard_fail(axis, broken);
 }

@@ -47,7 +47,7 @@ static bool ordinary(cm1e_axis_t *axis, follow_t *follow)
     return true;
 }
 
-static const coupling_function_t gear = {evaluate, steepest, ordinary, bounds};
+static const coupling_function_t gear = {evaluate, steepest, ordinary, bounds, NULL};
 
 /* The ratio in counts. It is computed from whole numbers as far as doubles hold them, so it is rounded only once. */
 static double counts_ratio(const cm1e_axis_t *slave, const cm1e_axis_t *master, double numerator, double denominator)

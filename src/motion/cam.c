@@ -82,8 +82,7 @@ static void draw_spline(cm1e_cam_knot_t *knots, int count, bool periodic)
                                             h * (knots[count - 2].curvature + 2 * knots[count - 1].curvature) / 6;
 }
 
-/** Returns false if doubles cannot represent it. */
-static bool interval(const cm1e_cam_t *cam, int i, cm1e_curve_t *curve)
+bool cm1e_cam_interval(const cm1e_cam_t *cam, int i, cm1e_curve_t *curve)
 {
     const cm1e_cam_knot_t *a = &cam->knots[i], *b = a + 1;
     if (cam->curve == mcCamLinear) {
@@ -173,7 +172,7 @@ static cm1e_cam_fault_t find_extremes(cm1e_cam_t *cam, int *at)
         all.third = larger(all.third, part.third);
         if (!adds(&all, &part))
             continue;
-        if (!interval(cam, *at, &curve))
+        if (!cm1e_cam_interval(cam, *at, &curve))
             return CM1E_CAM_STEEP;
         cm1e_curve_extremes(&curve, &part);
         widen(&all, &part);
@@ -239,7 +238,7 @@ static void find(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double phase)
             high = middle;
     }
     place->knot = low;
-    (void)interval(cam, low, &place->curve); /* cannot fail: it succeeded when the cam was compiled */
+    (void)cm1e_cam_interval(cam, low, &place->curve); /* cannot fail: it succeeded when the cam was compiled */
 }
 
 /** In a period, of the one that `place` has found. */

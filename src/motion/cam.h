@@ -65,6 +65,20 @@ typedef struct cm1e_cam_sample {
 /** Samples the cam at any position of the master. A single-shot cam keeps its first or last position outside of its
  *  points. */
 void cm1e_cam_sample(const cm1e_cam_t *cam, cm1e_cam_place_t *place, double master, cm1e_cam_sample_t *sample);
+/** A master that brakes until it stands, and its slave on the cam; u of the cam, s. */
+typedef struct cm1e_cam_braking {
+    double master, velocity;    /**< of the master, now or a cycle ago */
+    double own;                 /**< the deceleration that the slave may have */
+    double gentle, hard;        /**< decelerations of the master */
+    double cycle_s;
+} cm1e_cam_braking_t;
+
+/** The deceleration of the master, from `gentle` to `hard`, with which the slave brakes no harder than `own` until the
+ *  master stands; a bound below the largest one. It is `gentle` where nothing harder is known to be good: also if the
+ *  way has too many points to look at. At most 30 us or so. */
+double cm1e_cam_hardest_braking(const cm1e_cam_t *cam, const cm1e_cam_braking_t *asked);
+/** The curve behind a point of the cam. false: doubles cannot represent it, as is known when the cam is compiled. */
+bool cm1e_cam_interval(const cm1e_cam_t *cam, int knot, cm1e_curve_t *curve);
 /** cm1e_cam_sample() where the master is in the same interval of the same period as before, and not at its beginning.
  *  false: it is elsewhere, and nothing has changed. */
 static inline bool cm1e_cam_sample_again(const cm1e_cam_t *cam, const cm1e_cam_place_t *place, double master,
