@@ -179,6 +179,26 @@ static void test_the_master_brakes_no_harder_than_its_other_slave_can(void)
     TEST_ASSERT_DOUBLE_WITHIN(2e-5, set_of(MASTER), set_of(OTHER));
 }
 
+/* A program takes its power away because of the error: the ratio is what coupling_stop asks for then. */
+static void test_power_that_is_taken_away_because_of_the_error_costs_no_ratio(void)
+{
+    axes_describe(2);
+    axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+    axes_config(SLAVE)->max_deceleration = 50.0;
+    axes_config(SLAVE)->software_limit_negative = -7.0;
+    axes_config(SLAVE)->software_limit_positive = 7.0;
+    axes_make();
+    axes_enable_all();
+    meet_limit(8.0);
+    axes_power(MASTER, false);
+    axes_power(SLAVE, false);
+    const fate_t fate = stop_of_both();
+    kept_before_limit(&fate, 50.0);
+    axes_cycles(100);
+    for (int n = MASTER; n <= SLAVE; n++)
+        TEST_ASSERT_TRUE(axis_free(axes_axis(n)));
+}
+
 /* ---- random cams ------------------------------------------------------------------------------------------------- */
 
 enum { POINTS = 8 };
@@ -297,6 +317,7 @@ int main(void)
     RUN_TEST(test_a_slave_that_ramps_into_its_cam_does_not_keep_its_master_turning);
     RUN_TEST(test_where_the_cam_is_flat_the_master_brakes_as_hard_as_the_slave_can_there);
     RUN_TEST(test_the_master_brakes_no_harder_than_its_other_slave_can);
+    RUN_TEST(test_power_that_is_taken_away_because_of_the_error_costs_no_ratio);
     RUN_TEST(test_on_any_cam_braking_harder_costs_no_ratio);
     return UNITY_END();
 }
