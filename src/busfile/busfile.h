@@ -137,6 +137,8 @@ bool cm1e_busfile_convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from,
 bool cm1e_busfile_convert_several(cm1e_busfile_loaded_t *loaded, const cm1e_busfile_several_t *from,
                                   cm1e_config_problem_t *problem);
 
+/** There is no memory; returns false. */
+bool cm1e_busfile_no_memory(cm1e_config_problem_t *problem);
 /** Takes the one address that is stated of position, alias and explicit ID; 0: the others are. false: more than one
  *  is. `list`: "axes" or "slaves". */
 bool cm1e_busfile_convert_address(const uint16_t stated[3], cm1e_address_kind_t *kind, uint16_t *address,

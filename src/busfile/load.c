@@ -10,33 +10,11 @@
 #include "core/in_task.h"
 #include "device/place.h"
 
-/* ---- libcyaml ---------------------------------------------------------------------------------------------------- */
-
-/* libcyaml reports the error in the first line of its log, and its place in the lines of a backtrace, innermost
- * first. */
-static void take_log_line(cyaml_log_t level, void *context, const char *format, va_list args)
+bool cm1e_busfile_no_memory(cm1e_config_problem_t *problem)
 {
-    (void)level;
-    cm1e_config_problem_t *problem = context;
-    char line[sizeof problem->text];
-    vsnprintf(line, sizeof line, format, args);
-    line[strcspn(line, "\n")] = '\0';
-    if (problem->text[0] == '\0')
-        snprintf(problem->text, sizeof problem->text, "%s", line);
-    const char *place = strstr(line, "(line: ");
-    if (place && problem->line == 0)
-        sscanf(place, "(line: %zu, column: %zu)", &problem->line, &problem->column);
-}
-
-static void set_up_libcyaml(cyaml_config_t *settings, cm1e_config_problem_t *problem)
-{
-    *settings = (cyaml_config_t){
-        .log_fn = take_log_line,
-        .log_ctx = problem,
-        .mem_fn = cyaml_mem,
-        .log_level = CYAML_LOG_ERROR,
-        .flags = CYAML_CFG_NO_ALIAS,
-    };
+    snprintf(problem->text, sizeof problem->text, "out of memory");
+    problem->no_memory = true;
+    return false;
 }
 
 /* ---- conversion -------------------------------------------------------------------------------------------------- */
@@ -125,10 +103,8 @@ bool cm1e_busfile_convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from,
         return false;
     }
     for (uint32_t i = 0; i < from->axis_count; i++)
-        if (!cm1e_bus_config_add_axis(config, NULL)) {
-            snprintf(problem->text, sizeof problem->text, "out of memory");
-            return false;
-        }
+        if (!cm1e_bus_config_add_axis(config, NULL))
+            return cm1e_busfile_no_memory(problem);
     for (uint32_t i = 0; i < from->axis_count; i++)
         if (!convert_axis(&config->axes[i], &from->axes[i], i, problem))
             return false;
@@ -144,14 +120,17 @@ bool cm1e_busfile_convert(cm1e_bus_config_t *config, const cm1e_busfile_t *from,
 static cm1e_error_t fill(cm1e_busfile_loaded_t *loaded, const uint8_t *bytes, size_t size,
                          const cyaml_schema_value_t *schema, cm1e_config_problem_t *problem)
 {
-    cyaml_config_t settings;
-    set_up_libcyaml(&settings, problem);
+    /* No log: what libcyaml could tell has been told, with its place, by cm1e_busfile_compare(). */
+    const cyaml_config_t settings = {.mem_fn = cyaml_mem, .flags = CYAML_CFG_NO_ALIAS};
     cyaml_data_t *file = NULL;
     const cyaml_err_t load_error = cyaml_load_data(bytes, size, &settings, schema, &file, NULL);
-    if (load_error != CYAML_OK || !file) {
-        if (problem->text[0] == '\0')
-            snprintf(problem->text, sizeof problem->text, "%s", cyaml_strerror(load_error));
-        return load_error == CYAML_ERR_OOM ? CM1E_ERROR_NO_MEMORY : CM1E_ERROR_CONFIG;
+    if (load_error == CYAML_ERR_OOM) {
+        (void)cm1e_busfile_no_memory(problem);
+        return CM1E_ERROR_NO_MEMORY;
+    }
+    if (load_error != CYAML_OK) {
+        snprintf(problem->text, sizeof problem->text, "%s", cyaml_strerror(load_error));
+        return CM1E_ERROR_CONFIG;
     }
     loaded->count = 1;
     const bool good = schema == &cm1e_busfile_several_schema
@@ -159,7 +138,7 @@ static cm1e_error_t fill(cm1e_busfile_loaded_t *loaded, const uint8_t *bytes, si
                           : cm1e_busfile_convert(&loaded->buses[0], file, 0, loaded->path, problem) &&
                                 cm1e_config_find_problem(&loaded->buses[0], problem);
     cyaml_free(&settings, schema, file, 0);
-    return good ? CM1E_OK : CM1E_ERROR_CONFIG;
+    return good ? CM1E_OK : problem->no_memory ? CM1E_ERROR_NO_MEMORY : CM1E_ERROR_CONFIG;
 }
 
 static cm1e_error_t load_bytes(cm1e_busfile_loaded_t *loaded, const uint8_t *bytes, size_t size,
@@ -173,7 +152,7 @@ static cm1e_error_t load_bytes(cm1e_busfile_loaded_t *loaded, const uint8_t *byt
                                                                              : &cm1e_busfile_schema;
     error = cm1e_busfile_compare(&document, schema, problem) ? fill(loaded, bytes, size, schema, problem)
                                                              : CM1E_ERROR_CONFIG;
-    if (error != CM1E_OK && problem->line == 0)
+    if (error == CM1E_ERROR_CONFIG && problem->line == 0)
         cm1e_busfile_locate(&document, problem);
     yaml_document_delete(&document);
     return error;
@@ -185,7 +164,7 @@ static cm1e_error_t load_in_c_locale(cm1e_busfile_loaded_t *loaded, const uint8_
 {
     c_locale_t locale;
     if (!cm1e_c_locale_begin(&locale)) {
-        snprintf(problem->text, sizeof problem->text, "out of memory");
+        (void)cm1e_busfile_no_memory(problem);
         return CM1E_ERROR_NO_MEMORY;
     }
     const cm1e_error_t error = load_bytes(loaded, bytes, size, problem);

@@ -247,7 +247,6 @@ static bool convert_safe(const place_t *place, const char *key, const char *text
     signal->hold = strcasecmp(text, "hold") == 0;
     if (text[0] == '\0' || signal->hold || take_real(text, false, &signal->safe))
         return true;
-    signal->safe = 0;
     if (!take_truth(text, &truth))
         return wrong(place, key, "safe is '%s'; expected a number, true, false or hold", text);
     signal->safe = (double)truth;
@@ -315,6 +314,8 @@ static bool take_esi(const place_t *place, cm1e_slave_config_t *slave, const cm1
         return wrong(place, "esi", "the path of the ESI is longer than %zu bytes", sizeof slave->esi - 1);
     if (cm1e_esi_reader()(slave, slave->esi, from->esi_mode, cycle_time_ns, &diag) == CM1E_OK)
         return true;
+    if (diag.error == CM1E_ERROR_NO_MEMORY)
+        return cm1e_busfile_no_memory(place->problem);
     return wrong(place, diag.error == CM1E_ERROR_NOT_FOUND && from->esi_mode[0] && strstr(diag.text, "OpMode")
                  ? "esi_mode" : "esi", "%.100s: %.280s", from->esi, diag.text);
 }
@@ -368,10 +369,8 @@ bool cm1e_busfile_convert_slaves(cm1e_bus_config_t *config, const cm1e_busfile_t
     for (uint32_t i = 0; i < from->slave_count; i++) {
         cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(config, NULL);
         const place_t place = {problem, i};
-        if (!slave) {
-            snprintf(problem->text, sizeof problem->text, "out of memory");
-            return false;
-        }
+        if (!slave)
+            return cm1e_busfile_no_memory(problem);
         if (!convert_slave(&place, slave, &from->slaves[i]) ||
             !take_esi(&place, slave, &from->slaves[i], path, config->cycle_time_ns))
             return false;

@@ -15,6 +15,7 @@ typedef struct cm1e_config_problem {
     size_t line, column; /**< 1 ...; line 0: not known */
     char path[96];       /**< "axes[0].limits.velocity"; "": the configuration as a whole */
     char text[480];
+    bool no_memory;      /**< nothing is wrong with the configuration: there was no memory to load it */
 } cm1e_config_problem_t;
 
 enum { CM1E_CAM_POINTS_MINIMUM = 2, CM1E_CAM_POINTS_MAXIMUM = 4096 };
