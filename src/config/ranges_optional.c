@@ -41,10 +41,10 @@ bool cm1e_config_check_optional(const check_t *check)
 /** The first of its group in the list; its own index if it is that one. */
 static uint32_t head_of(const cm1e_bus_config_t *config, uint32_t index)
 {
-    for (uint32_t i = 0; i < index; i++)
-        if (strcmp(config->slaves[i].hot_connect, config->slaves[index].hot_connect) == 0)
-            return i;
-    return index;
+    uint32_t i = 0;
+    while (strcmp(config->slaves[i].hot_connect, config->slaves[index].hot_connect) != 0)
+        i++;
+    return i;
 }
 
 static const char *wrong_member(const cm1e_bus_config_t *config, uint32_t index, char text[CM1E_WRONG_OPTIONAL])

@@ -1,4 +1,5 @@
 /* A configuration between a program and a library of different versions, which know more or fewer members of it. */
+#include <malloc.h>
 #include <stddef.h>
 #include <string.h>
 
@@ -94,13 +95,34 @@ static void test_axes_that_are_only_counted_are_refused(void)
     TEST_ASSERT_NULL(cm1e_bus_config_add_axis(&config, NULL));
 }
 
+/* Whatever was in the memory before. */
+static void test_what_is_added_is_empty(void)
+{
+    static const cm1e_axis_config_t no_axis;
+    static const cm1e_slave_config_t no_slave;
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_bus_config_init(&config, NULL, 0));
+    for (int i = 0; i < 3; i++) {
+        cm1e_axis_config_t *axis = cm1e_bus_config_add_axis(&config, "x");
+        cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, "y");
+        TEST_ASSERT_EQUAL_STRING("x", axis->name);
+        TEST_ASSERT_EQUAL_STRING("y", slave->name);
+        axis->name[0] = slave->name[0] = '\0';
+        TEST_ASSERT_EQUAL_MEMORY(&no_axis, axis, sizeof *axis);
+        TEST_ASSERT_EQUAL_MEMORY(&no_slave, slave, sizeof *slave);
+        memset(axis, 0x5A, sizeof *axis);
+        memset(slave, 0x5A, sizeof *slave);
+    }
+}
+
 int main(void)
 {
+    mallopt(M_PERTURB, 0x5A); /* what is allocated has other bytes than 0 */
     UNITY_BEGIN();
     RUN_TEST(test_an_older_program_has_defaults_for_what_it_does_not_know);
     RUN_TEST(test_a_newer_program_has_members_that_the_library_does_not_know);
     RUN_TEST(test_a_loaded_configuration_has_the_sizes_of_the_program);
     RUN_TEST(test_no_more_axes_than_the_maximum_are_added);
     RUN_TEST(test_axes_that_are_only_counted_are_refused);
+    RUN_TEST(test_what_is_added_is_empty);
     return UNITY_END();
 }
