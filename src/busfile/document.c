@@ -242,7 +242,7 @@ void cm1e_busfile_locate(yaml_document_t *document, cm1e_config_problem_t *probl
         } else {
             path += *path == '.';
             const size_t length = strcspn(path, ".[");
-            node = length > 0 ? find_key(document, node, path, length) : NULL;
+            node = find_key(document, node, path, length); /* at the end of the path no key has its name, "" */
             path += length;
         }
     }

@@ -101,7 +101,7 @@ static bool take_entry(const char *text, cm1e_pdo_entry_config_t *entry)
     char *last;
     const unsigned long bits = *end == '/' ? strtoul(end + 1, &last, 10) : 0;
     entry->bits = (uint8_t)bits;
-    return bits >= 1 && bits <= 255 && *last == '\0' && end[1] >= '1' && end[1] <= '9';
+    return bits >= 1 && bits <= 255 && *last == '\0' && end[1] >= '1'; /* no sign, space or 0 */
 }
 
 static bool convert_mapping(const place_t *place, unsigned n, const cm1e_busfile_mapping_t *from,
@@ -213,7 +213,7 @@ static bool convert_type(const place_t *place, const char *key, const char *text
 {
     char types[100];
     const unsigned found = cm1e_io_type_of_name(text);
-    *type = found < CM1E_IO_BYTES ? (cm1e_io_type_t)found : CM1E_IO_BOOL;
+    *type = (cm1e_io_type_t)found;
     list_types(types);
     return found < CM1E_IO_BYTES || wrong(place, key, "type is '%s'; expected one of: %s", text, types);
 }

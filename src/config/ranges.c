@@ -272,14 +272,12 @@ static bool check_axes(check_t *check)
 bool cm1e_config_find_problem(const cm1e_bus_config_t *config, cm1e_config_problem_t *problem)
 {
     check_t check = {.config = config, .problem = problem};
-    if (config->axis_count > CM1E_MAX_AXES) {
-        snprintf(problem->path, sizeof problem->path, "axes");
+    if (config->axis_count > CM1E_MAX_AXES) { /* these two are not of a file, so they have no path */
         snprintf(problem->text, sizeof problem->text, "axis_count is %u; expected at most %d", config->axis_count,
                  CM1E_MAX_AXES);
         return false;
     }
     if (config->axis_count > 0 && !config->axes) {
-        snprintf(problem->path, sizeof problem->path, "axes");
         snprintf(problem->text, sizeof problem->text, "axis_count is %u, but there is no memory for axes; expected are "
                  "axes made with cm1e_bus_config_init() or cm1e_bus_config_add_axis()", config->axis_count);
         return false;

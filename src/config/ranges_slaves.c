@@ -347,7 +347,6 @@ bool cm1e_config_check_slaves(const cm1e_bus_config_t *config, cm1e_config_probl
 {
     slave_check_t check = {.config = config, .problem = problem};
     if (config->slave_count > CM1E_MAX_SLAVES || (config->slave_count > 0 && !config->slaves)) {
-        snprintf(problem->path, sizeof problem->path, "slaves");
         snprintf(problem->text, sizeof problem->text, "slave_count is %u; expected at most %d, made with "
                  "cm1e_bus_config_add_slave()", config->slave_count, CM1E_MAX_SLAVES);
         return false;

@@ -321,11 +321,16 @@ static const struct {
      {"channel is 1, which entry 1 of the list has already"}},
     {"axes:\n- {position: 1, channel: 1, k37: 10}\n- {position: 1}\n", "3:14", {"only one of the two has a channel"}},
     {"axes:\n- {position: 1}\n- {position: 1, channel: 1, k37: 10}\n", "3:14", {"only one of the two has a channel"}},
+    {"axes:\n- {alias: 1, channel: 1, k37: 10}\n- {alias: 1, channel: 2, k37: 10, optional: true}\n", "3:45",
+     {"optional differs from that of entry 1 of the list, which is on the same bridge"}},
+    {"axes:\n- {channel: 1, k37: 10}\n- {alias: 1, channel: 1, k37: 10}\n- {alias: 1, channel: 2, k37: 10, recover: "
+     "auto}\n", "4:44", {"recover differs from that of entry 2 of the list, which is on the same bridge"}},
     {"axes:\n- {position: 1, channel: 1, k37: 10, motor: CM2}\n- {position: 1, channel: 2, k37: 10, motor: CM1}\n",
      "3:45", {"motor is CM1 at channel 2", "no bridge has"}},
     /* YAML that has no place here, and text that is no YAML */
     {"axes:\n- &a {name: X}\n- *a\n", "2:3", {"an anchor", "not supported"}},
     {"axes:\n- *a\n", "2:3", {"an alias", "not supported"}},
+    {"axes: &a [{name: X}]\n", "1:7", {"an anchor", "not supported"}},
     {"axes: [{name: &n X}]\n", "1:15", {"an anchor"}},
     {"axes: [{name: !!str X}]\n", "1:15", {"a tag", "not supported"}},
     {"axes: !axes [{}]\n", "1:7", {"a tag"}},

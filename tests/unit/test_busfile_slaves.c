@@ -32,7 +32,7 @@ static const char everything[] =
     "    watchdog_ms: 250\n"
     "    sdo:\n"
     "      - {object: 0x8000:12, type: INT, value: -100}\n"
-    "      - {object: 0x8000:0a, type: REAL, value: 1.5, before: op}\n"
+    "      - {object: 0x8000:a, type: REAL, value: 1.5, before: op}\n"
     "      - {object: 0xF800, type: UDINT, value: 0xFFFFFFFF, before: safe_op}\n"
     "      - {object: 0x8000:01, type: BOOL, value: true}\n"
     "      - {object: 0x8000:02, type: ULINT, value: 18446744073709551615}\n"
@@ -218,6 +218,17 @@ static void test_wrong_keys_are_told_with_place_and_cure(void)
         {"sdo: [{object: 0x8000:01, type: LREAL, value: 1e309}]", "3:65", "which is no LREAL; expected"},
         {"sdo: [{object: 0x8000:01, type: LREAL, value: 1e-400}]", "3:65", "which is no LREAL; expected"},
         {"sdo: [{object: 0x8000:01, type: WORD, value: 1}]", "3:51", "type is 'WORD'; expected one of: BOOL, SINT"},
+        {"sdo: [{object: 0x80000:01, type: UINT, value: 1}]", "3:34", "object is '0x80000:01'; expected it as in"},
+        {"sdo: [{object: \"0x8000:\", type: UINT, value: 1}]", "3:34", "object is '0x8000:'"},
+        {"sdo: [{object: 0x8000:001, type: UINT, value: 1}]", "3:34", "object is '0x8000:001'"},
+        {"inputs_pdos: [0x1A000]", "3:33", "'0x1A000' is no PDO"},
+        {"inputs_pdos: [0x1A0g]", "3:33", "'0x1A0g' is no PDO"},
+        {"mapping: [{pdo: 0x1A00, entries: [gap/+8]}]", "3:53", "'gap/+8' is no entry"},
+        {"mapping: [{pdo: 0x1A00, entries: [gap/08]}]", "3:53", "'gap/08' is no entry"},
+        {"mapping: [{pdo: 0x1A00, entries: [gap/x]}]", "3:53", "'gap/x' is no entry"},
+        {"mapping: [{pdo: 0x1A00, entries: [gap/8x]}]", "3:53", "'gap/8x' is no entry"},
+        {"inputs: [{name: 0x6000:01, bit: 1}]", "3:28", "has the name '0x6000:01'"},
+        {"outputs: [{name: OUTPUT 1, bit: 1}]", "3:29", "has the name 'OUTPUT 1'"},
         {"sdo: [{object: 8000, type: UINT, value: 1}]", "3:34", "object is '8000'"},
         {"sdo: [{object: 0x0800:01, type: UINT, value: 1}]", "3:34", "expected an object from 0x1000 on"},
         {"sdo: [{object: 0x8000:01, value: 1}]", "3:25", "'type' is missing"},

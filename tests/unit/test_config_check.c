@@ -578,6 +578,31 @@ static void test_the_data_of_an_sdo_are_those_of_its_slave(void)
     }
 }
 
+/* What a bus file cannot have. */
+static void test_texts_and_signals_of_slaves(void)
+{
+    cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, "valves");
+    slave = cm1e_bus_config_add_slave(&config, NULL);
+    config.slaves[0].address = 3;
+    slave->address = 4;
+    slave->name[0] = '\0'; /* "slave2" */
+    snprintf(config.axes[0].wiring.inputs[0], CM1E_SIGNAL_LENGTH, "slave2.end");
+    config.axes[0].wiring.input_count = 1;
+    config.axes[0].inputs.home = CM1E_WIRED_FIRST;
+    expect_good();
+    config.axes[0].inputs.home = CM1E_WIRED_FIRST + 1;
+    expect_wrong("inputs.home is 12; expected 1 ... 4, or the name of a signal");
+    config.axes[0].inputs.home = 0;
+    snprintf(config.axes[0].wiring.inputs[0], CM1E_SIGNAL_LENGTH, "slave1.end");
+    expect_wrong("has 'slave1.end'; expected the name of a slave");
+    config.axes[0].wiring.input_count = 0;
+    memset(slave->hot_connect, 'a', sizeof slave->hot_connect);
+    expect_wrong("slave slave2: hot_connect is not a text of less than 32 bytes");
+    slave->hot_connect[0] = '\0';
+    memset(slave->name, 'a', sizeof slave->name);
+    expect_wrong("slave 2: name is not a text of less than 32 bytes");
+}
+
 int main(void)
 {
     UNITY_BEGIN();
@@ -609,5 +634,6 @@ int main(void)
     RUN_TEST(test_pulses_of_any_axis_need_clocks);
     RUN_TEST(test_the_pulses_of_a_mode);
     RUN_TEST(test_the_data_of_an_sdo_are_those_of_its_slave);
+    RUN_TEST(test_texts_and_signals_of_slaves);
     return UNITY_END();
 }
