@@ -487,6 +487,24 @@ def check_case(folder, text, place, words, shown):
         faults.append(f"{shown}: one mistake, and {len(errors)} errors: {found}")
 
 
+def check_bounds(folder):
+    """Each bound is taken, and the next number refused: priorities, and the last day of each month."""
+    task = "CONFIGURATION C RESOURCE R ON PC TASK t(PRIORITY := {}); PROGRAM a WITH t : P (o => g, i := 3); END_RESOURCE " \
+           "END_CONFIGURATION VAR_GLOBAL g : INT; f : DINT; END_VAR PROGRAM P VAR_INPUT i : INT; END_VAR VAR_OUTPUT o : INT; " \
+           "END_VAR END_PROGRAM"
+    last = {month: 31 if month in (1, 3, 5, 7, 8, 10, 12) else 30 if month != 2 else 28 for month in range(1, 13)}
+    days = [f"2023-{month:02}-{day:02}" for month, day in last.items()] + ["2024-02-29", "2000-02-29", "1970-01-01"]
+    for source in (task.format(0), task.format(65535), PROGRAM.format("".join(f"d1 := D#{day};" for day in days))):
+        if answer(folder, source)[0]:
+            faults.append(f"{source}: nothing is wrong in it, and it has errors: {answer(folder, source)[0]}")
+    for number in (-1, 65536):
+        check_case(folder, task.format(number), "1:41", ["PRIORITY is 0 (the highest) to 65535"], f"PRIORITY {number}")
+    check_case(folder, task.format(1).replace("=> g", "=> f"), "1:79", ['"o" needs a variable of type INT'], "=> f")
+    for day in [f"2023-{month:02}-{day + 1:02}" for month, day in last.items()] + \
+            ["2100-02-29", "2023-00-01", "2023-01-00", "1969-12-31", "2263-01-01"]:
+        check_case(folder, PROGRAM.format(f"d1 := D#{day};"), "9:7", ["DATE"], day)
+
+
 def damaged(source, generator):
     """A good program with some of its words changed, left out or doubled."""
     words = source.split(" ")
@@ -505,6 +523,7 @@ with tempfile.TemporaryDirectory() as folder:
         check_case(folder, PROGRAM.format(statement), place, words, statement)
     for source, place, words in SOURCES:
         check_case(folder, source, place, words, source)
+    check_bounds(folder)
     for source in HUGE:
         errors, result = answer(folder, source)
         if any(not error["text"] for error in errors) or (result.returncode == 1) != bool(errors):
