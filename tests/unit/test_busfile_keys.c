@@ -222,8 +222,11 @@ static void test_names_and_idents_as_they_may_be(void)
     static const struct {
         const char *keys, *wrong; /* wrong: of the text; NULL: none */
     } rows[] = {
-        {"name: slave seven", NULL}, {"name: slave 7x", NULL}, {"name: seven", NULL}, {"name: 7x", NULL},
+        {"name: slave x", NULL}, {"name: slave seven", NULL}, {"name: slave 7x", NULL},
+        {"name: seven", NULL}, {"name: 7x", NULL},
         {"name: slave", NULL}, {"name: Slave 12", "that is no position"}, {"name: \"slave \"", "that is no position"},
+        {"sdo: [{object: 0x1000, type: INT, value: 1}]", NULL},
+        {"sdo: [{object: 0x0FFF, type: INT, value: 1}]", "expected an object from 0x1000 on"},
         {"modules: [0x1, 0xFFFFFFFF]", NULL}, {"modules: [0x123456789]", "is no ident"},
         {"modules: [0x]", "is no ident"}, {"modules: [0x12g]", "is no ident"}, {"vendor: 0xFFFFFFFF", NULL},
         {"vendor: 0x12g", "expected it as in"},

@@ -6,8 +6,8 @@
 
 #include "cm1e/config.h"
 
-/* The linker puts these in the place of the functions (tests/CMakeLists.txt); libcyaml asks cyaml_mem(), libyaml has its
- * own. */
+/* The linker puts these in the place of the functions (tests/CMakeLists.txt); libcyaml asks cyaml_mem(), and libyaml has
+ * its own. */
 void *__real_malloc(size_t size);
 void *__real_calloc(size_t count, size_t size);
 void *__real_realloc(void *memory, size_t size);

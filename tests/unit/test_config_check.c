@@ -517,7 +517,7 @@ static void test_the_range_of_a_signal_is_that_of_its_bits(void)
     TEST_ASSERT_FALSE(cm1e_io_fits(CM1E_IO_REAL, 32, 3.5e38) || cm1e_io_fits(CM1E_IO_LREAL, 64, INFINITY));
 }
 
-static void test_pulses_of_any_axis_need_clocks(void)
+static void test_pulses_of_any_axis_or_slave_need_clocks(void)
 {
     TEST_ASSERT_FALSE(cm1e_config_uses_clocks(&config));
     config.distributed_clocks = true;
@@ -527,6 +527,14 @@ static void test_pulses_of_any_axis_need_clocks(void)
         config.axes[i].dc.sync0_us = 1000;
         TEST_ASSERT_TRUE(cm1e_config_uses_clocks(&config));
         config.axes[i].dc.sync0_us = 0;
+    }
+    for (int i = 0; i < 2; i++)
+        cm1e_bus_config_add_slave(&config, NULL);
+    TEST_ASSERT_FALSE(cm1e_config_uses_clocks(&config));
+    for (int i = 0; i < 2; i++) {
+        config.slaves[i].dc.sync0_us = 1000;
+        TEST_ASSERT_TRUE(cm1e_config_uses_clocks(&config));
+        config.slaves[i].dc.sync0_us = 0;
     }
 }
 
@@ -596,6 +604,12 @@ static void test_texts_and_signals_of_slaves(void)
     snprintf(config.axes[0].wiring.inputs[0], CM1E_SIGNAL_LENGTH, "slave1.end");
     expect_wrong("has 'slave1.end'; expected the name of a slave");
     config.axes[0].wiring.input_count = 0;
+    slave->signal_count = 1;
+    slave->signals[0] = (cm1e_signal_config_t){.name = "data", .type = CM1E_IO_BYTES, .type_stated = true, .bits = 80};
+    expect_good();
+    slave->signals[0].bits = 0;
+    expect_wrong("inputs[0] is of type BYTES; expected its number of bits too");
+    slave->signal_count = 0;
     memset(slave->hot_connect, 'a', sizeof slave->hot_connect);
     expect_wrong("slave slave2: hot_connect is not a text of less than 32 bytes");
     slave->hot_connect[0] = '\0';
@@ -631,7 +645,7 @@ int main(void)
     RUN_TEST(test_virtual_time_needs_the_simulated_segment);
     RUN_TEST(test_only_listed_axes_are_checked);
     RUN_TEST(test_the_range_of_a_signal_is_that_of_its_bits);
-    RUN_TEST(test_pulses_of_any_axis_need_clocks);
+    RUN_TEST(test_pulses_of_any_axis_or_slave_need_clocks);
     RUN_TEST(test_the_pulses_of_a_mode);
     RUN_TEST(test_the_data_of_an_sdo_are_those_of_its_slave);
     RUN_TEST(test_texts_and_signals_of_slaves);
