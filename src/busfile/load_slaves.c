@@ -204,9 +204,9 @@ static void list_values(cm1e_io_type_t type, char text[80])
 /* "BOOL, SINT ...": of numbers only. */
 static void list_types(char text[100])
 {
-    text[0] = '\0';
+    size_t used = 0;
     for (unsigned i = 0; i < CM1E_IO_BYTES; i++)
-        snprintf(text + strlen(text), 100 - strlen(text), "%s%s", i ? ", " : "", cm1e_io_types[i].name);
+        used += (size_t)snprintf(text + used, 100 - used, "%s%s", i ? ", " : "", cm1e_io_types[i].name);
 }
 
 static bool convert_type(const place_t *place, const char *key, const char *text, cm1e_io_type_t *type)

@@ -123,6 +123,7 @@ static void test_an_axis_without_a_motor_has_no_keys_of_one(void)
 
 static char read_path[600];
 static cm1e_error_t answer;
+static const char *words = "told by the reader";
 
 static cm1e_error_t read_esi(cm1e_slave_config_t *slave, const char *path, const char *mode, int64_t cycle_time_ns,
                              cm1e_diag_t *told)
@@ -131,7 +132,7 @@ static cm1e_error_t read_esi(cm1e_slave_config_t *slave, const char *path, const
     (void)mode;
     (void)cycle_time_ns;
     snprintf(read_path, sizeof read_path, "%s", path);
-    return cm1e_diag_set(told, answer, 0, "%s", answer == CM1E_OK ? "" : "told by the reader");
+    return cm1e_diag_set(told, answer, 0, "%s", answer == CM1E_OK ? "" : words);
 }
 
 static void test_an_esi_is_beside_the_bus_file(void)
@@ -167,6 +168,18 @@ static void test_what_the_reader_of_an_esi_tells(void)
     answer = CM1E_ERROR_CONFIG;
     TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, load("slaves:\n  - {position: 1, esi: maker.xml}\n"));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, ":2:24: maker.xml: told by the reader"), diag.text);
+    /* An OpMode that is not found is told at its own key. */
+    static const struct {
+        cm1e_error_t answer;
+        const char *words, *place;
+    } rows[] = {{CM1E_ERROR_NOT_FOUND, "has no OpMode", ":2:45: "}, {CM1E_ERROR_CONFIG, "has no OpMode", ":2:24: "},
+                {CM1E_ERROR_NOT_FOUND, "cannot be read", ":2:24: "}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        answer = rows[i].answer;
+        words = rows[i].words;
+        TEST_ASSERT_EQUAL(CM1E_ERROR_CONFIG, load("slaves:\n  - {position: 1, esi: maker.xml, esi_mode: DC}\n"));
+        TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, rows[i].place), diag.text);
+    }
     answer = CM1E_ERROR_NO_MEMORY;
     TEST_ASSERT_EQUAL(CM1E_ERROR_NO_MEMORY, load("slaves:\n  - {position: 1, esi: maker.xml}\n"));
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, ".yaml: out of memory"), diag.text);

@@ -108,6 +108,19 @@ static void test_sdos_have_the_bits_of_their_values(void)
     }
 }
 
+/* 0 is a value, and not what is too small. */
+static void test_zero_is_a_value_of_every_type(void)
+{
+    static const char *const values[] = {"BOOL, value: 0", "INT, value: -0", "REAL, value: 0", "REAL, value: -0.0",
+                                         "LREAL, value: 0e5", "ULINT, value: 0x0"};
+    for (size_t i = 0; i < sizeof values / sizeof values[0]; i++) {
+        char text[120];
+        snprintf(text, sizeof text, "slaves: [{position: 1, sdo: [{object: 0x8000:01, type: %s}]}]\n", values[i]);
+        TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load(text), diag.text);
+        cm1e_bus_config_free(&config);
+    }
+}
+
 static void test_modules_and_simulated_devices(void)
 {
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, load("slaves:\n  - {position: 1, modules: [0x205, 0x00000105], "
@@ -217,7 +230,8 @@ static void test_wrong_keys_are_told_with_place_and_cure(void)
         {"sdo: [{object: 0x8000:01, type: REAL, value: 1e-60}]", "3:64", "which is no REAL; expected"},
         {"sdo: [{object: 0x8000:01, type: LREAL, value: 1e309}]", "3:65", "which is no LREAL; expected"},
         {"sdo: [{object: 0x8000:01, type: LREAL, value: 1e-400}]", "3:65", "which is no LREAL; expected"},
-        {"sdo: [{object: 0x8000:01, type: WORD, value: 1}]", "3:51", "type is 'WORD'; expected one of: BOOL, SINT"},
+        {"sdo: [{object: 0x8000:01, type: WORD, value: 1}]", "3:51", "type is 'WORD'; expected one of: BOOL, SINT, USINT, "
+         "INT, UINT, DINT, UDINT, LINT, ULINT, REAL, LREAL"},
         {"sdo: [{object: 0x80000:01, type: UINT, value: 1}]", "3:34", "object is '0x80000:01'; expected it as in"},
         {"sdo: [{object: \"0x8000:\", type: UINT, value: 1}]", "3:34", "object is '0x8000:'"},
         {"sdo: [{object: 0x8000:001, type: UINT, value: 1}]", "3:34", "object is '0x8000:001'"},
@@ -338,6 +352,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_every_key_becomes_what_it_says);
     RUN_TEST(test_sdos_have_the_bits_of_their_values);
+    RUN_TEST(test_zero_is_a_value_of_every_type);
     RUN_TEST(test_modules_and_simulated_devices);
     RUN_TEST(test_mapping_and_signals_are_in_their_order);
     RUN_TEST(test_wrong_keys_are_told_with_place_and_cure);

@@ -172,6 +172,22 @@ static void test_enumerations_out_of_range_are_refused(void)
     expect_good();
 }
 
+static void test_recoveries_out_of_range_are_refused(void)
+{
+    cm1e_slave_config_t *slave = cm1e_bus_config_add_slave(&config, "valves");
+    slave->address = 3;
+    for (int recover = CM1E_RECOVER_DEFAULT; recover <= CM1E_RECOVER_AUTO; recover++) {
+        config.axes[1].recover = slave->recover = (cm1e_recover_t)recover;
+        expect_good();
+    }
+    slave->recover = (cm1e_recover_t)(CM1E_RECOVER_AUTO + 1);
+    expect_wrong("slave valves: recover is 4; expected one of the enumeration");
+    slave->recover = (cm1e_recover_t)-1;
+    expect_wrong("slave valves: recover is -1; expected one of the enumeration");
+    config.axes[1].recover = (cm1e_recover_t)(CM1E_RECOVER_AUTO + 1);
+    expect_wrong("axis axis2: recover is 4; expected one of the enumeration");
+}
+
 static void test_addresses_are_in_range_and_single(void)
 {
     config.axes[0].address = CM1E_MAX_SLAVES + 1;
@@ -626,6 +642,7 @@ int main(void)
     RUN_TEST(test_frame_timeout_is_within_the_cycle);
     RUN_TEST(test_texts_without_end_are_refused);
     RUN_TEST(test_enumerations_out_of_range_are_refused);
+    RUN_TEST(test_recoveries_out_of_range_are_refused);
     RUN_TEST(test_addresses_are_in_range_and_single);
     RUN_TEST(test_default_position_counts_as_the_place_in_the_list);
     RUN_TEST(test_axes_without_a_motor_take_no_place);
