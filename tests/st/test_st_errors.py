@@ -423,6 +423,8 @@ SOURCES = [
     ("PROGRAM P VAR x AT %IX1.0 : BOOL; END_VAR END_PROGRAM", "1:20", ["%IX3.0.5"]),
     ("PROGRAM P VAR x AT %IX1.0.8 : BOOL; END_VAR END_PROGRAM", "1:20", ["%IX3.0.5"]),
     ("PROGRAM P VAR x AT %IW1.0 : DINT; END_VAR END_PROGRAM", "1:20", ["16 bits", "DINT"]),
+    ("PROGRAM P VAR x AT %MB4 : S; END_VAR END_PROGRAM TYPE S : STRUCT a : LINT (0..5); END_STRUCT; END_TYPE", "1:20",
+     ["a multiple of 8"]),
     ("PROGRAM P VAR x AT %MW1 : INT; END_VAR END_PROGRAM", "1:20", ["multiple of 2"]),
     ("PROGRAM P VAR x AT %MX1 : BOOL; END_VAR END_PROGRAM", "1:20", ["%MX4.3"]),
     ("PROGRAM P VAR x AT %MB1 : INT; END_VAR END_PROGRAM", "1:20", ["8 bits", "INT"]),
@@ -494,7 +496,9 @@ def check_bounds(folder):
            "END_VAR END_PROGRAM"
     last = {month: 31 if month in (1, 3, 5, 7, 8, 10, 12) else 30 if month != 2 else 28 for month in range(1, 13)}
     days = [f"2023-{month:02}-{day:02}" for month, day in last.items()] + ["2024-02-29", "2000-02-29", "1970-01-01"]
-    for source in (task.format(0), task.format(65535), PROGRAM.format("".join(f"d1 := D#{day};" for day in days))):
+    of_another = "PROGRAM P VAR CONSTANT N : INT := 3; END_VAR END_PROGRAM PROGRAM Q VAR i : INT; END_VAR " \
+                 "CASE i OF P.N: i := 1; END_CASE END_PROGRAM" # its value is known here, too
+    for source in (of_another, task.format(0), task.format(65535), PROGRAM.format("".join(f"d1 := D#{day};" for day in days))):
         if answer(folder, source)[0]:
             faults.append(f"{source}: nothing is wrong in it, and it has errors: {answer(folder, source)[0]}")
     for number in (-1, 65536):
