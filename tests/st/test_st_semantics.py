@@ -378,6 +378,20 @@ def check_called():
             faults.append(f"{name}: programs that are called: {found}, {host.table.task_count} tasks")
 
 
+GIVEN = "CONFIGURATION C RESOURCE R ON PC TASK t(INTERVAL := T#1ms); PROGRAM a WITH t : P (i := 3, o => g); PROGRAM b WITH t : P (" \
+        "i := g, o => h); END_RESOURCE END_CONFIGURATION VAR_GLOBAL g, h : INT; END_VAR PROGRAM P VAR_INPUT i : INT; END_VAR " \
+        "VAR_OUTPUT o : INT; END_VAR o := 10 * i; END_PROGRAM"
+
+
+def check_given(folder):
+    """What a configuration gives to a program before it runs, and takes from it behind it."""
+    host = Host(BIN, folder, GIVEN, "given")
+    host.run()
+    found = [host.value(of) for of in ("a.i", "g", "b.i", "h")]
+    if found != [3, 30, 30, 300]:
+        faults.append(f"programs with values of the configuration: {found}")
+
+
 KEPT = "TYPE Mode : (Idle, Run := 5); Recipe : STRUCT speed : INT; depth : INT; mode : Mode; list : ARRAY[1..2] OF INT; " \
        "END_STRUCT; END_TYPE VAR_GLOBAL RETAIN rec : ARRAY[0..1] OF Recipe; END_VAR PROGRAM P END_PROGRAM"
 KEPT_OTHERWISE = [("speed : INT; depth : INT", "depth : INT; speed : INT"), ("depth", "width"), ("Idle, Run := 5", "Run, Idle := 5"),
@@ -399,6 +413,7 @@ with tempfile.TemporaryDirectory() as folder:
     check_layouts(folder)
     check_events(folder)
     check_called()
+    check_given(folder)
     check_cases(folder)
     check_faults(folder)
 if faults:
