@@ -73,6 +73,14 @@ static void try_words(const at_t *at, const cyaml_schema_value_t *value)
     for (uint32_t i = 0; i < value->enumeration.count; i++)
         snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s", i ? ", " : "",
                  value->enumeration.strings[i].str);
+    for (uint32_t i = 0; i < value->enumeration.count; i++) { /* beside an axis, which a file needs */
+        char file[400];
+        const bool of_bus = strncmp(at->before, "{bus: ", 6) == 0;
+        snprintf(file, sizeof file, "%s%s%s%s\n", of_bus ? "{axes: [{}], " : "{", at->before + 1,
+                 value->enumeration.strings[i].str, at->behind);
+        if (!loads(file))
+            TEST_ASSERT_NULL_MESSAGE(strstr(diag.text, "expected one of"), diag.text);
+    }
     expect_wrong_at(at, "qqqqqqqqq", 0, "%s is 'qqqqqqqqq'; expected one of: %s", words);
     expect_wrong_at(at, "\"qqqqqqqqq\"", 0, "%s is text in quotes; expected the value without them%s", "");
 }

@@ -108,6 +108,26 @@ static void test_sdos_have_the_bits_of_their_values(void)
     }
 }
 
+static void test_the_bounds_of_whole_numbers_are_those_of_their_types(void)
+{
+    static const char *const rows[][5] = { /* type, the smallest, one less, the largest, one more */
+        {"SINT", "-128", "-129", "127", "128"}, {"USINT", "0", "-1", "255", "256"},
+        {"INT", "-32768", "-32769", "32767", "32768"}, {"UINT", "0", "-1", "65535", "65536"},
+        {"DINT", "-2147483648", "-2147483649", "2147483647", "2147483648"},
+        {"UDINT", "0", "-1", "4294967295", "4294967296"},
+        {"LINT", "-9223372036854775808", "-9223372036854775809", "9223372036854775807", "9223372036854775808"},
+        {"ULINT", "0", "-1", "18446744073709551615", "18446744073709551616"}, {"BOOL", "0", "-1", "1", "2"},
+        {"SINT", "0x0", "0x", "0xFF", "0x100"}, {"LINT", "0x0", "-0x1", "0xFFFFFFFFFFFFFFFF", "0x10000000000000000"}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++)
+        for (int n = 1; n < 5; n++) {
+            char text[160];
+            snprintf(text, sizeof text, "slaves: [{position: 1, sdo: [{object: 0x8000:01, type: %s, value: %s}]}]\n",
+                     rows[i][0], rows[i][n]);
+            TEST_ASSERT_EQUAL_MESSAGE(n % 2 ? CM1E_OK : CM1E_ERROR_CONFIG, load(text), text);
+            cm1e_bus_config_free(&config);
+        }
+}
+
 /* 0 is a value, and not what is too small. */
 static void test_zero_is_a_value_of_every_type(void)
 {
@@ -352,6 +372,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_every_key_becomes_what_it_says);
     RUN_TEST(test_sdos_have_the_bits_of_their_values);
+    RUN_TEST(test_the_bounds_of_whole_numbers_are_those_of_their_types);
     RUN_TEST(test_zero_is_a_value_of_every_type);
     RUN_TEST(test_modules_and_simulated_devices);
     RUN_TEST(test_mapping_and_signals_are_in_their_order);
