@@ -289,7 +289,7 @@ static bool random_stop(fate_t *fate)
 static void test_on_any_cam_braking_harder_costs_no_ratio(void)
 {
     int together = 0, harder = 0, would_have = 0, kept = 0;
-    for (int run = 0; run < seed_count(3000); run++) {
+    for (int run = 0; run < seed_count(2000); run++) {
         char words[120];
         fate_t fate;
         chance_seed(seed_of(run));
