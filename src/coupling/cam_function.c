@@ -196,17 +196,17 @@ static bool ordinary(cm1e_axis_t *axis, follow_t *follow)
 }
 
 /* A cam is rarely steep all the way: what counts is the way to where the master stands. */
-static double braking(const cm1e_axis_t *axis, const follow_t *follow, double gentle, double hard)
+static double braking(const cm1e_axis_t *axis, const follow_t *follow, const coupling_braking_t *asked)
 {
     const cam_place_t *cam = &follow->cam;
-    const double finer = fabs(cam->finer), own = smaller(axis->limits.emergency.deceleration,
-                                                         axis->limits.maximum.deceleration);
+    const double finer = fabs(cam->finer);
     if (cam->left != 0.0)
-        return hard; /* the slave stands */
-    const cm1e_cam_braking_t asked = {.master = place_now(follow), .own = own / fabs(cam->slave_scaling),
-                                      .velocity = follow->links[0].master->setpoint.velocity * cam->finer,
-                                      .gentle = gentle * finer, .hard = hard * finer, .cycle_s = axis->cycle_s};
-    return larger(gentle, cm1e_cam_hardest_braking(&cam->slot->cam, &asked) / finer);
+        return asked->hard; /* the slave stands */
+    const cm1e_cam_braking_t in_cam = {.master = place_now(follow), .own = asked->own / fabs(cam->slave_scaling),
+                                       .velocity = follow->links[0].master->setpoint.velocity * cam->finer,
+                                       .gentle = asked->gentle * finer, .hard = asked->hard * finer,
+                                       .cycle_s = axis->cycle_s, .steps = asked->steps};
+    return larger(asked->gentle, cm1e_cam_hardest_braking(&cam->slot->cam, &in_cam) / finer);
 }
 
 static const coupling_function_t cam_kind = {evaluate, steepest, ordinary, bounds, braking};

@@ -85,6 +85,13 @@ typedef struct follow {
     approach_t approach;
 } follow_t;
 
+/** How hard a master may brake; u/s2. */
+typedef struct coupling_braking {
+    double own;          /**< of the slave: what it can do, and all that follow it in turn */
+    double gentle, hard; /**< of the master */
+    int *steps;          /**< cm1e_cam_braking_t */
+} coupling_braking_t;
+
 /** A coupling function. */
 typedef struct coupling_function {
     /** Computes the slave's set-point for the masters as seen in this cycle. At the end of an approach or of a
@@ -98,9 +105,9 @@ typedef struct coupling_function {
     /** The bounds of the slave's motion while its only master is on this course; no bound of jerk: infinite. false:
      *  they are not known ahead. */
     bool (*bounds)(const cm1e_axis_t *axis, const follow_t *follow, const course_t *master, cm1e_motion_bounds_t *most);
-    /** u/s2: the deceleration of the only master, from `gentle` to `hard`, that lets the slave brake no harder than it
-     *  may until the master stands. NULL: `gentle`, which the steepest place allows, because all are alike. */
-    double (*braking)(const cm1e_axis_t *axis, const follow_t *follow, double gentle, double hard);
+    /** u/s2: the deceleration of the only master, from `gentle` to `hard`, that lets the slave brake no harder than
+     *  `own` until the master stands. NULL: all places are as steep as the steepest one. */
+    double (*braking)(const cm1e_axis_t *axis, const follow_t *follow, const coupling_braking_t *asked);
 } coupling_function_t;
 
 /** The catch-up: difference to the coupling function, in the frame that moves with it; u. */

@@ -128,25 +128,47 @@ static double gentle_braking(const cm1e_axis_t *axis)
     return braking(axis) / follow->function->steepest(axis, follow, 0);
 }
 
-/* u/s2 of the master: with which it can follow on the way that is left, at most `hard`. */
-static double braking_on_way(const cm1e_axis_t *axis, double hard)
+static bool keeps_ratio_by(const link_t *link)
 {
-    const coupling_t *c = axis->coupling;
-    const double gentle = gentle_braking(axis);
-    return c->catch_up.on || !c->now->function->braking ? gentle
-                                                        : c->now->function->braking(axis, c->now, gentle, hard);
+    return in_force(link) && braking(link->slave) > 0.0 && !gets_in_step(link->slave);
+}
+
+/* u/s2 of the axis: with which all that follow it, and so on, can follow anywhere. */
+static double braking_of_followers(const cm1e_axis_t *axis)
+{
+    double all = INFINITY;
+    for (const link_t *link = axis->followed->slaves; link; link = link->next)
+        if (keeps_ratio_by(link)) {
+            const follow_t *follow = link->slave->coupling->now;
+            const double own = fmin(braking(link->slave), braking_of_followers(link->slave));
+            all = fmin(all, own / follow->function->steepest(link->slave, follow, 0));
+        }
+    return all;
+}
+
+/* u/s2 of the master: with which it, and all that follow it, can follow on the way that is left, at most `hard`. */
+static double braking_on_way(const cm1e_axis_t *axis, double hard, int *steps)
+{
+    const follow_t *now = axis->coupling->now;
+    const double own = fmin(axis->limits.emergency.deceleration, axis->limits.maximum.deceleration);
+    const coupling_braking_t asked = {.own = fmin(own, braking_of_followers(axis)), .gentle = gentle_braking(axis),
+                                      .hard = hard, .steps = steps};
+    if (axis->coupling->catch_up.on || !now->function->braking)
+        return fmin(asked.gentle, asked.own / now->function->steepest(axis, now, 0));
+    return now->function->braking(axis, now, &asked);
 }
 
 /* u/s2 of the master: with which all slaves that keep their ratio can follow it, but at least what this one can follow
- * anywhere. */
+ * anywhere. However many they are, the cycle has to end in time: they share their steps. */
 static double braking_with_slaves(const cm1e_axis_t *axis, const cm1e_axis_t *master)
 {
-    const double hard = master->limits.emergency.deceleration;
-    double all = hard;
-    for (const link_t *link = master->followed->slaves; link; link = link->next)
-        if (in_force(link) && braking(link->slave) > 0.0 && !gets_in_step(link->slave))
-            all = fmin(all, braking_on_way(link->slave, hard));
-    return fmax(gentle_braking(axis), all);
+    const double gentle = gentle_braking(axis);
+    double all = master->limits.emergency.deceleration;
+    int steps = CM1E_CAM_BRAKING_STEPS;
+    for (const link_t *link = master->followed->slaves; link && all > gentle; link = link->next)
+        if (keeps_ratio_by(link))
+            all = fmin(all, braking_on_way(link->slave, all, &steps));
+    return fmax(gentle, all);
 }
 
 void cm1e_coupling_keep_ratio(cm1e_axis_t *axis, guard_t broken)

@@ -71,11 +71,15 @@ typedef struct cm1e_cam_braking {
     double own;                 /**< the deceleration that the slave may have */
     double gentle, hard;        /**< decelerations of the master */
     double cycle_s;
+    int *steps;                 /**< of the way, that may still be looked at in this cycle; it counts them */
 } cm1e_cam_braking_t;
+
+/** Steps in a cycle, at most: each costs 0.1 us or so. */
+enum { CM1E_CAM_BRAKING_STEPS = 256 };
 
 /** The deceleration of the master, from `gentle` to `hard`, with which the slave brakes no harder than `own` until the
  *  master stands; a bound below the largest one. It is `gentle` where nothing harder is known to be good: also if the
- *  way has too many points to look at. At most 30 us or so. */
+ *  way has too many points to look at. */
 double cm1e_cam_hardest_braking(const cm1e_cam_t *cam, const cm1e_cam_braking_t *asked);
 /** The curve behind a point of the cam. false: doubles cannot represent it, as is known when the cam is compiled. */
 bool cm1e_cam_interval(const cm1e_cam_t *cam, int knot, cm1e_curve_t *curve);

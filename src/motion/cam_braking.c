@@ -14,8 +14,6 @@
 
 /* Steps: of the shortest way, and of the way so far. */
 static const double part_of_way = 1.0 / 16.0;
-/* Steps, at most: each costs 0.1 us or so. */
-enum { MOST_STEPS = 256 };
 
 /** Where the walk is, and what it has found. */
 typedef struct walk {
@@ -152,7 +150,7 @@ double cm1e_cam_hardest_braking(const cm1e_cam_t *cam, const cm1e_cam_braking_t 
     if (!(asked->hard > asked->gentle) || cycle >= (cam->curve == mcCamLinear ? cam->shortest : cam->length))
         return asked->gentle;
     bool on_cam = begin(&w);
-    for (int i = 0; i < MOST_STEPS && w.most > w.least; i++) {
+    for (; *asked->steps > 0 && w.most > w.least; --*asked->steps) {
         if (!on_cam || w.way > square / w.most + 2 * cycle)
             return w.most;
         on_cam = step(&w, square / asked->hard);

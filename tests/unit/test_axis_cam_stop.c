@@ -126,7 +126,7 @@ static fate_t stop_of_both(void)
 
 /* Slope 1 over 18 u of the master, then 0.5 u that are up to 18 times as steep, and on: a shaft with a cam that advances.
  * The slave meets its limit where the slope is 1. */
-static void meet_limit(double velocity)
+static void ride_shaft(void)
 {
     points[0] = (MC_CAM_POINT){-9.0, -9.0, 1, 0};
     points[1] = (MC_CAM_POINT){9.0, 9.0, 1, 0};
@@ -134,6 +134,11 @@ static void meet_limit(double velocity)
     points[3] = (MC_CAM_POINT){10.0, 14.5, 1, 0};
     const cm1e_axis_coupling_t coupling = by_cam(select_ideal(4, mcCamPolynomial5, true), mcAbsolute);
     cam_in(&coupling);
+}
+
+static void meet_limit(double velocity)
+{
+    ride_shaft();
     axes_move_velocity(MASTER, velocity);
     AXES_UNTIL(axes_state(SLAVE) == CM1E_AXIS_ERROR_STOP);
     failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "the software limit at");
@@ -177,6 +182,27 @@ static void test_the_master_brakes_no_harder_than_its_other_slave_can(void)
     fate_t fate = stop_of_both();
     TEST_ASSERT_DOUBLE_WITHIN(1e-6, 80.0, fate.deceleration);
     TEST_ASSERT_DOUBLE_WITHIN(2e-5, set_of(MASTER), set_of(OTHER));
+}
+
+/* What follows the slave cannot brake as hard as the slave itself. Braked by the steepest place of the cam, it can. */
+static void test_the_master_brakes_no_harder_than_what_follows_its_slave_can(void)
+{
+    axes_describe(3);
+    for (int n = SLAVE; n <= OTHER; n++)
+        axes_config(n)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+    axes_config(SLAVE)->max_velocity = 2.0;
+    axes_config(OTHER)->max_deceleration = 50.0;
+    axes_make();
+    axes_enable_all();
+    axes_gear_in(OTHER, SLAVE, 1, 1);
+    ride_shaft();
+    axes_move_velocity(MASTER, 2.5);
+    AXES_UNTIL(axes_state(SLAVE) == CM1E_AXIS_ERROR_STOP);
+    failed(SLAVE, CM1E_ERROR_AXIS_COUPLING_LIMIT, "velocity");
+    const fate_t fate = stop_of_both();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 50.0, fate.deceleration);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-5, 0.0, fate.beside);
+    TEST_ASSERT_DOUBLE_WITHIN(2e-5, set_of(SLAVE), set_of(OTHER));
 }
 
 /* A program takes its power away because of the error: the ratio is what coupling_stop asks for then. */
@@ -317,6 +343,7 @@ int main(void)
     RUN_TEST(test_a_slave_that_ramps_into_its_cam_does_not_keep_its_master_turning);
     RUN_TEST(test_where_the_cam_is_flat_the_master_brakes_as_hard_as_the_slave_can_there);
     RUN_TEST(test_the_master_brakes_no_harder_than_its_other_slave_can);
+    RUN_TEST(test_the_master_brakes_no_harder_than_what_follows_its_slave_can);
     RUN_TEST(test_power_that_is_taken_away_because_of_the_error_costs_no_ratio);
     RUN_TEST(test_on_any_cam_braking_harder_costs_no_ratio);
     return UNITY_END();

@@ -63,6 +63,13 @@ static cm1e_cam_braking_t random_braking(void)
                                 .gentle = fmin(hard, own / steepest()), .hard = hard, .cycle_s = 1e-3};
 }
 
+static double hardest(cm1e_cam_braking_t asked)
+{
+    int steps = CM1E_CAM_BRAKING_STEPS;
+    asked.steps = &steps;
+    return cm1e_cam_hardest_braking(&cam, &asked);
+}
+
 /* Harder than the steepest place of all allows, but never so that the slave brakes harder than it may. */
 static void test_the_slave_never_brakes_harder_than_it_may(void)
 {
@@ -71,7 +78,7 @@ static void test_the_slave_never_brakes_harder_than_it_may(void)
         random_cam();
         for (int i = 0; i < 5; i++) {
             const cm1e_cam_braking_t asked = random_braking();
-            const double a = cm1e_cam_hardest_braking(&cam, &asked);
+            const double a = hardest(asked);
             TEST_ASSERT_TRUE(a >= asked.gentle && a <= asked.hard);
             if (!(a > asked.gentle))
                 continue;
@@ -96,7 +103,7 @@ static double over_stretch(double place, double velocity, double hard)
     compile(3, mcCamPolynomial5, true);
     const cm1e_cam_braking_t asked = {.master = place, .velocity = velocity, .own = 50, .gentle = 50 / steepest(),
                                       .hard = hard, .cycle_s = 1e-3};
-    return cm1e_cam_hardest_braking(&cam, &asked);
+    return hardest(asked);
 }
 
 static void test_the_way_that_is_left_counts(void)
@@ -119,13 +126,13 @@ static void test_beside_a_single_shot_cam_the_master_brakes_as_it_can(void)
     compile(2, mcCamPolynomial5, false);
     cm1e_cam_braking_t asked = {.master = 2, .velocity = 5, .own = 50, .gentle = 50 / steepest(), .hard = 100,
                                 .cycle_s = 1e-3};
-    TEST_ASSERT_EQUAL_DOUBLE(100, cm1e_cam_hardest_braking(&cam, &asked));
+    TEST_ASSERT_EQUAL_DOUBLE(100, hardest(asked));
     asked.master = -3; /* 0.125 u are enough to stand */
-    TEST_ASSERT_EQUAL_DOUBLE(100, cm1e_cam_hardest_braking(&cam, &asked));
+    TEST_ASSERT_EQUAL_DOUBLE(100, hardest(asked));
     asked.master = -0.1;
     asked.velocity = 10; /* 0.5 u */
-    TEST_ASSERT_TRUE(cm1e_cam_hardest_braking(&cam, &asked) >= asked.gentle);
-    TEST_ASSERT_TRUE(cm1e_cam_hardest_braking(&cam, &asked) < 50);
+    TEST_ASSERT_TRUE(hardest(asked) >= asked.gentle);
+    TEST_ASSERT_TRUE(hardest(asked) < 50);
 }
 
 /* More points than it looks at. */
@@ -135,10 +142,25 @@ static void test_a_way_over_too_many_points_is_braked_gently(void)
         points[i] = (MC_CAM_POINT){i * 0.001, sin(i * 0.001), 0, 0};
     compile(4096, mcCamCubicSpline, true);
     cm1e_cam_braking_t asked = {.master = 0.5, .velocity = 2, .own = 50, .gentle = 1, .hard = 1.1, .cycle_s = 1e-5};
-    TEST_ASSERT_EQUAL_DOUBLE(1, cm1e_cam_hardest_braking(&cam, &asked));
+    TEST_ASSERT_EQUAL_DOUBLE(1, hardest(asked));
     asked.velocity = 1;
     asked.hard = 40;
-    TEST_ASSERT_TRUE(cm1e_cam_hardest_braking(&cam, &asked) > 30);
+    TEST_ASSERT_TRUE(hardest(asked) > 30);
+}
+
+/* What several slaves of a master ask in a cycle. */
+static void test_all_who_ask_in_a_cycle_share_its_steps(void)
+{
+    int steps = CM1E_CAM_BRAKING_STEPS;
+    cm1e_cam_braking_t asked = {.master = 10, .velocity = 10, .own = 50, .hard = 1000, .cycle_s = 1e-3, .steps = &steps};
+    (void)over_stretch(10, 10, 1000);
+    asked.gentle = 50 / steepest();
+    TEST_ASSERT_DOUBLE_WITHIN(1e-6, 50, cm1e_cam_hardest_braking(&cam, &asked));
+    TEST_ASSERT_INT_WITHIN(CM1E_CAM_BRAKING_STEPS / 4, CM1E_CAM_BRAKING_STEPS * 3 / 4, steps);
+    for (int n = 0; n < 100; n++)
+        (void)cm1e_cam_hardest_braking(&cam, &asked);
+    TEST_ASSERT_EQUAL_INT(0, steps);
+    TEST_ASSERT_EQUAL_DOUBLE(asked.gentle, cm1e_cam_hardest_braking(&cam, &asked));
 }
 
 int main(void)
@@ -149,5 +171,6 @@ int main(void)
     RUN_TEST(test_the_way_that_is_left_counts);
     RUN_TEST(test_beside_a_single_shot_cam_the_master_brakes_as_it_can);
     RUN_TEST(test_a_way_over_too_many_points_is_braked_gently);
+    RUN_TEST(test_all_who_ask_in_a_cycle_share_its_steps);
     return UNITY_END();
 }
