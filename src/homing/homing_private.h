@@ -56,6 +56,7 @@ typedef struct stepping {
     double search, way;             /**< +-1: direction of the search, and the present direction */
     double travel;                  /**< u */
     double pace;                    /**< u/s, of the set-point while the motor is pressed */
+    double carried;                 /**< %: the torque at its beginning, or at that of the step that it has ended */
     int64_t deadline_ns, pressed_ns;
     int64_t settled_ns;             /**< a motor that is not at its set-point by then is blocked */
     position_t actual_before;       /**< at the last look */

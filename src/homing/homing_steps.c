@@ -210,13 +210,14 @@ static void relieve_cycle(cm1e_axis_t *axis)
     press_on(axis, 0.0);
 }
 
-/* Below the TorqueLimit of a search for a switch, torque carries a load. */
+/* The torque of a search for a switch carries a load, as it did when the search began. What has come meanwhile presses
+ * against a stop, and so does all of it where it has ended the search. */
 static bool presses_by_torque(const cm1e_axis_t *axis)
 {
     const stepping_t *s = &axis->homing->stepping;
-    const double limit = s->step.torque_limit;
-    const bool means_a_stop = !step_by_switch(s->step.kind) || s->outcome == CM1E_ERROR_AXIS_STEP_TORQUE;
-    return means_a_stop && limit > 0.0 && fabs(torque_percent(axis)) > 0.5 * limit;
+    const double limit = s->step.torque_limit, torque = torque_percent(axis);
+    const bool carries = step_by_switch(s->step.kind) && s->outcome != CM1E_ERROR_AXIS_STEP_TORQUE;
+    return limit > 0.0 && fabs(torque) > 0.5 * limit && (!carries || fabs(torque - s->carried) > 0.25 * limit);
 }
 
 /* Whether the motor presses against something: a free motor is never so far from a set-point at rest. */
@@ -346,11 +347,12 @@ static cm1e_error_t prepare_search(const cm1e_axis_t *axis, const move_t *move, 
 cm1e_error_t cm1e_homing_step_prepare(const cm1e_axis_t *axis, const cm1e_homing_step_t *step, const move_t *move,
                                     stepping_t *next, cm1e_profile_t *profile)
 {
+    const stepping_t *ended = &axis->homing->stepping;
     *next = (stepping_t){.step = *step, .position = move->position, .after_push = axis->homing_step.pushing};
+    next->carried = next->after_push ? ended->carried : torque_percent(axis);
     if (searches(next->step.kind))
         return prepare_search(axis, move, next, profile);
     next->phase = STEPPING_STOP;
-    const stepping_t *ended = &axis->homing->stepping;
     const bool halts = next->step.kind == CM1E_STEP_DIRECT || move->position == 0.0;
     if (next->after_push && halts && !step_by_switch(ended->step.kind)) /* the drive may press without any lag */
         next->step.torque_limit = ended->step.torque_limit;

@@ -232,6 +232,40 @@ START_TEST(test_a_search_for_a_switch_that_ends_leaves_a_load_where_it_is)
 }
 END_TEST
 
+/** A search so slow that the motor hardly lags when its torque is above half of TorqueLimit at a stop: behind MC_Stop the
+ *  drive would sum up more and more. The load that it carries does not count. */
+START_TEST(test_a_slow_search_for_a_switch_that_ends_at_a_stop_does_not_press_on)
+{
+    for (int load = 0; load < 2; load++) {
+        begin(_i);
+        if (load)
+            simulate("load 1 -0.01");
+        MC_MoveAbsolute_t go = {.Axis = &reference, .Execute = TRUE, .Position = -0.9998, .Velocity = 1.0};
+        for (int n = 0; n < 3000 && !go.Done; n++) {
+            inputs();
+            MC_MoveAbsolute(&go);
+            outputs();
+        }
+        MC_StepAbsoluteSwitch_t find = {.Axis = &reference, .Execute = TRUE, .Direction = mcNegativeDirection,
+                                        .Velocity = 0.0005, .SwitchMode = mcRisingEdge, .TorqueLimit = 90.0};
+        MC_Stop_t stop = {.Axis = &reference};
+        for (int n = 0; n < 3000 && !stop.Done; n++) {
+            inputs();
+            MC_StepAbsoluteSwitch(&find);
+            stop.Execute |= info().actual_torque < -50.0;
+            MC_Stop(&stop);
+            outputs();
+        }
+        ck_assert_msg(stop.Done && find.CommandAborted, "%s", text());
+        for (int n = 0; n < 1000; n++) {
+            cycles(1);
+            ck_assert_msg(fabs(info().actual_torque) < 25.0, "still %.1f %%", info().actual_torque);
+        }
+        close_segment();
+    }
+}
+END_TEST
+
 /** The motor is beside its set-point, by a load that has just come: what is actual in that cycle gets SetPosition. */
 START_TEST(test_home_direct_gives_the_actual_position)
 {
@@ -364,6 +398,7 @@ int main(void)
     tcase_add_loop_test(tests, test_block_does_not_go_on_pushing, 0, DEVICES);
     tcase_add_loop_test(tests, test_end_of_a_step_that_presses_without_lag, 0, DEVICES);
     tcase_add_loop_test(tests, test_a_search_for_a_switch_that_ends_leaves_a_load_where_it_is, 0, 2 * DEVICES);
+    tcase_add_loop_test(tests, test_a_slow_search_for_a_switch_that_ends_at_a_stop_does_not_press_on, 0, DEVICES);
     tcase_add_test(tests, test_mc_stop_ends_a_search_in_standstill_not_homed);
     tcase_add_test(tests, test_home_direct_gives_the_actual_position);
     tcase_add_test(tests, test_home_direct_and_what_the_motor_cannot);
