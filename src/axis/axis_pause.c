@@ -35,12 +35,25 @@
  * overshoots when it gets back to its speed. */
 static const double reserve = 0.08;
 
+/* The ramp of an error goes on as it was: others may follow it, or be on one path with it, and brake no harder. */
+static cm1e_motion_limits_t limits_of_stop(const cm1e_axis_t *axis)
+{
+    const cm1e_profile_t *ramp = &axis->setpoint.profile;
+    cm1e_motion_limits_t limits = axis->limits.emergency;
+    if (axis->state != CM1E_AXIS_ERROR_STOP)
+        /* Without a limit of jerk: a motor that turned when it got its torque. */
+        return axis->power.energized ? axis->limits.maximum : limits;
+    const bool hard = axis->setpoint.brakes_hard && ramp->segment_count > 0;
+    const double of_ramp = hard ? fabs(ramp->segments[ramp->segment_count - 1].start.acceleration) : 0.0;
+    if (of_ramp > 0.0)
+        limits.deceleration = fmin(limits.deceleration, of_ramp);
+    return limits;
+}
+
 static cm1e_error_t stop_anew(cm1e_axis_t *axis)
 {
     const from_t from = from_set(axis);
-    /* Without a limit of jerk: an error, and a motor that turned when it got its torque. */
-    const bool hard = axis->state == CM1E_AXIS_ERROR_STOP || !axis->power.energized;
-    cm1e_motion_limits_t limits = hard ? axis->limits.emergency : axis->limits.maximum;
+    cm1e_motion_limits_t limits = limits_of_stop(axis);
     cm1e_profile_t profile;
     cm1e_error_t error = axis->commands.active ? cm1e_axis_limits_of(axis, &from, &axis->commands.move, &limits)
                          : CM1E_OK;

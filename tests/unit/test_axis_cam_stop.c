@@ -205,6 +205,50 @@ static void test_the_master_brakes_no_harder_than_what_follows_its_slave_can(voi
     TEST_ASSERT_DOUBLE_WITHIN(2e-5, set_of(SLAVE), set_of(OTHER));
 }
 
+static bool answers_miss;
+
+/* A motor has lost a part of its velocity when the answers come again. */
+static void slow_down(cm1e_bus_t *motor)
+{
+    static int32_t before[2];
+    int32_t *of_motor = &before[motor == axes_motor(SLAVE)];
+    if (answers_miss)
+        motor->velocity_raw = *of_motor / 10 * 9;
+    else
+        *of_motor = motor->velocity_raw;
+}
+
+/* The ramp begins anew with the velocity that is left, and with the deceleration that it had. */
+static void test_lost_answers_on_the_ramp_cost_no_ratio(void)
+{
+    for (int silent = 1; silent < 6; silent++) {
+        axes_describe(2);
+        axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+        axes_config(SLAVE)->max_deceleration = 20.0;
+        axes_config(SLAVE)->software_limit_negative = -7.0;
+        axes_config(SLAVE)->software_limit_positive = 7.0;
+        axes_make();
+        axes_enable_all();
+        for (int n = MASTER; n <= SLAVE; n++) {
+            axes_motor(n)->world = slow_down;
+            axes_bench.witness[n].strictness = AXES_UNWATCHED; /* it loses velocity */
+        }
+        meet_limit(8.0);
+        axes_cycles(50);
+        answers_miss = true;
+        axes_bench.received = CM1E_ERROR_TIMEOUT;
+        axes_cycles(silent);
+        axes_bench.received = CM1E_OK;
+        axes_cycles(1);
+        answers_miss = false;
+        TEST_ASSERT_TRUE(axes_info(MASTER).set_velocity < 6.5);
+        const fate_t fate = stop_of_both();
+        TEST_ASSERT_DOUBLE_WITHIN(1e-6, 20.0, fate.deceleration);
+        TEST_ASSERT_DOUBLE_WITHIN(2e-5, 0.0, fate.beside);
+        axes_end();
+    }
+}
+
 /* A program takes its power away because of the error: the ratio is what coupling_stop asks for then. */
 static void test_power_that_is_taken_away_because_of_the_error_costs_no_ratio(void)
 {
@@ -344,6 +388,7 @@ int main(void)
     RUN_TEST(test_where_the_cam_is_flat_the_master_brakes_as_hard_as_the_slave_can_there);
     RUN_TEST(test_the_master_brakes_no_harder_than_its_other_slave_can);
     RUN_TEST(test_the_master_brakes_no_harder_than_what_follows_its_slave_can);
+    RUN_TEST(test_lost_answers_on_the_ramp_cost_no_ratio);
     RUN_TEST(test_power_that_is_taken_away_because_of_the_error_costs_no_ratio);
     RUN_TEST(test_on_any_cam_braking_harder_costs_no_ratio);
     return UNITY_END();
