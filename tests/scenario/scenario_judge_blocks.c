@@ -72,9 +72,12 @@ static void judge_gear(run_t *run, const instance_t *block, const machine_axis_t
                       axis->name, block->type->name, ratio, axis->info.set_velocity, master->info.set_velocity);
 }
 
-/** One that is passed without a stop, because another command waits to blend into it, is Done on its way. */
+/** One that is passed without a stop, because another command waits to blend into it, is Done on its way. In the cycle in
+ *  which its axis fails it shows what was: the set-point is where the motor is. */
 static void judge_arrival(run_t *run, const instance_t *block, const machine_axis_t *axis)
 {
+    if (axis->info.state == CM1E_AXIS_ERROR_STOP)
+        return;
     const double unit = axis->spec->counts_per_unit, range = axis->spec->modulo / unit;
     double off = axis->info.set_position - block_number(block, "Position");
     off = range > 0 ? remainder(off, range) : off;
