@@ -313,6 +313,7 @@ static void judge_gain(run_t *run, machine_axis_t *axis)
     const int window = cycles_of(run, GAIN_MS);
     const double speed = fabs(axis->probe.velocity_counts_per_s);
     memmove(seen->speeds + 1, seen->speeds, sizeof seen->speeds - sizeof seen->speeds[0]);
+    seen->shaft[2] = seen->shaft[1];
     seen->shaft[1] = seen->shaft[0];
     seen->shaft[0] = signed_speed(axis);
     seen->speeds[0] = fmax(speed, speed_held_back(axis));

@@ -37,7 +37,11 @@ bool is_braked_first(const machine_axis_t *axis, double velocity)
     const double *before = axis->seen.shaft, now = signed_speed(axis);
     /* What the drive has shown is a cycle older, and it may brake already, or turn the motor round. Where no frame came, the
      * simulator has not moved the shaft: the cycle before that counts. */
-    const double shown = before[now == before[0]], least = fmin(now, shown), most = fmax(now, shown);
+    const double shown = before[now == before[0]];
+    /* A bridge shows no velocity: behind a silence that is the mean one since the last answer. */
+    const bool silent = axis->channel > 0 && (axis->seen.quiet < 3 || axis->seen.rung < 3);
+    const double mean = silent ? before[2] : shown;
+    const double least = fmin(now, fmin(shown, mean)), most = fmax(now, fmax(shown, mean));
     const bool disabled = axis->info.state == CM1E_AXIS_DISABLED || axis->seen.fails_off;
     return is_motor(axis) && disabled && axis->seen.set_velocity == 0 &&
            (velocity > 0 ? most > 0 && velocity < 1.02 * most + SERVO_SPEED_COUNTS

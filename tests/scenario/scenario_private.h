@@ -44,7 +44,7 @@ typedef struct instance {
 typedef struct witness {
     cm1e_axis_state_t state;
     double speeds[SPEEDS];                    /**< of the last cycles */
-    double shaft[2];                          /**< of the last two, counts/s in the direction of its axis */
+    double shaft[3];                          /**< of the last three, counts/s in the direction of its axis */
     double set_velocity;                  /**< counts/s, of the set-point */
     int unmoved;                          /**< cycles since that was another one than 0 */
     double rest_at;                       /**< counts; where it came to rest */
