@@ -221,8 +221,8 @@ static double number_at(const char *text, const char **end)
 {
     char digits[40];
     size_t length = 0, used = 0;
-    for (; length < sizeof digits - 1 && (text[length] != ',' || (text[length + 1] >= '0' && text[length + 1] <= '9'));
-         length++)
+    for (; length < sizeof digits - 1 && text[length] != '\0' &&
+           (text[length] != ',' || (text[length + 1] >= '0' && text[length + 1] <= '9')); length++)
         if (text[length] != ',')
             digits[used++] = text[length];
     digits[used] = '\0';
