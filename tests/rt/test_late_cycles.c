@@ -104,10 +104,15 @@ START_TEST(test_where_every_cycle_is_late_no_axis_keeps_its_torque)
 }
 END_TEST
 
+static run_t turn_late(int at, int late_ms)
+{
+    return run_late((run_t){.machine = {.axis_count = 1, .mapping = CM1E_MAPPING_CSV}, .program = program,
+                            .late_at = at, .late_ms = late_ms, .enough_ms = SETTLED_MS});
+}
+
 static void goes_on(int at, int late_ms)
 {
-    const run_t run = run_late((run_t){.machine = {.axis_count = 1, .mapping = CM1E_MAPPING_CSV}, .program = program,
-                                       .late_at = at, .late_ms = late_ms, .enough_ms = SETTLED_MS});
+    const run_t run = turn_late(at, late_ms);
     const double speed = run.probe.velocity_counts_per_s / COUNTS;
     const double lag = run.lag + velocity * 1e-3; /* the next set-point is where the motor is now */
     ck_assert_msg(fabs(speed - velocity) <= 0.01 * velocity && fabs(lag) <= 3 / COUNTS,
@@ -121,6 +126,19 @@ START_TEST(test_the_position_loop_of_csv_goes_on_in_late_cycles)
     for (size_t i = 0; i < sizeof late_ms / sizeof late_ms[0]; i++)
         for (int at = IN_VELOCITY_AT - 10; at < IN_VELOCITY_AT + 10; at++)
             goes_on(at, late_ms[i]);
+}
+END_TEST
+
+/** The set-point stands then, and the position loop brakes the motor until it is about v / 20 beyond. */
+START_TEST(test_where_each_cycle_misses_one_or_two_a_motor_in_csv_comes_to_rest)
+{
+    for (int late_ms = 1; late_ms <= 2; late_ms++)
+        for (int at = IN_VELOCITY_AT - 10; at < IN_VELOCITY_AT + 10; at++) {
+            const run_t run = turn_late(at, late_ms);
+            ck_assert_msg(fabs(run.probe.velocity_counts_per_s) < 10 && run.lag < 0.0 && run.lag >= -1.1 * velocity / 20,
+                          "from cycle %d on by %d ms: %g counts/s, lag %g u", at, late_ms,
+                          run.probe.velocity_counts_per_s, run.lag);
+        }
 }
 END_TEST
 
@@ -160,6 +178,7 @@ int main(void)
     TCase *cases = tcase_create("late");
     tcase_set_timeout(cases, 60);
     tcase_add_test(cases, test_the_position_loop_of_csv_goes_on_in_late_cycles);
+    tcase_add_test(cases, test_where_each_cycle_misses_one_or_two_a_motor_in_csv_comes_to_rest);
     tcase_add_test(cases, test_a_pause_of_csv_that_ends_within_a_cycle_shifts_the_set_point_by_whole_cycles);
     tcase_add_test(cases, test_where_every_cycle_is_late_no_axis_keeps_its_torque);
     suite_add_tcase(suite, cases);
