@@ -27,10 +27,13 @@ static int braking_of(int n)
     return cycles;
 }
 
-static void make_two(double software_limit)
+/* `deceleration`: of the slave; 0: the default. */
+static void make_two(double deceleration, double software_limit)
 {
     axes_describe(2);
     axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
+    if (deceleration > 0.0)
+        axes_config(SLAVE)->max_deceleration = deceleration;
     axes_config(SLAVE)->software_limit_negative = -software_limit;
     axes_config(SLAVE)->software_limit_positive = software_limit;
     axes_make();
@@ -53,7 +56,7 @@ static MC_CAM_ID select_step(double height, double way)
  * would let the master go on for seconds. */
 static void test_a_slave_that_ramps_into_its_cam_does_not_keep_its_master_turning(void)
 {
-    make_two(2.0);
+    make_two(0.0, 2.0);
     const cm1e_axis_coupling_t coupling = by_cam(select_step(1.0, 0.05), mcRampIn);
     axes_move_velocity(MASTER, 10.0);
     axes_move_velocity(SLAVE, -10.0);
@@ -156,7 +159,7 @@ static void kept_before_limit(const fate_t *fate, double deceleration)
 static void test_where_the_cam_is_flat_the_master_brakes_as_hard_as_the_slave_can_there(void)
 {
     for (int sign = -1; sign <= 1; sign += 2) {
-        make_two(7.0);
+        make_two(0.0, 7.0);
         meet_limit(8.0 * sign);
         const fate_t fate = stop_of_both();
         kept_before_limit(&fate, 100.0);
@@ -222,13 +225,7 @@ static void slow_down(cm1e_bus_t *motor)
 static void test_lost_answers_on_the_ramp_cost_no_ratio(void)
 {
     for (int silent = 1; silent < 6; silent++) {
-        axes_describe(2);
-        axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
-        axes_config(SLAVE)->max_deceleration = 20.0;
-        axes_config(SLAVE)->software_limit_negative = -7.0;
-        axes_config(SLAVE)->software_limit_positive = 7.0;
-        axes_make();
-        axes_enable_all();
+        make_two(20.0, 7.0);
         for (int n = MASTER; n <= SLAVE; n++) {
             axes_motor(n)->world = slow_down;
             axes_bench.witness[n].strictness = AXES_UNWATCHED; /* it loses velocity */
@@ -252,13 +249,7 @@ static void test_lost_answers_on_the_ramp_cost_no_ratio(void)
 /* A program takes its power away because of the error: the ratio is what coupling_stop asks for then. */
 static void test_power_that_is_taken_away_because_of_the_error_costs_no_ratio(void)
 {
-    axes_describe(2);
-    axes_config(SLAVE)->coupling_stop = CM1E_COUPLING_STOP_KEEP_RATIO;
-    axes_config(SLAVE)->max_deceleration = 50.0;
-    axes_config(SLAVE)->software_limit_negative = -7.0;
-    axes_config(SLAVE)->software_limit_positive = 7.0;
-    axes_make();
-    axes_enable_all();
+    make_two(50.0, 7.0);
     meet_limit(8.0);
     axes_power(MASTER, false);
     axes_power(SLAVE, false);
