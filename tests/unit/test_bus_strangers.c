@@ -1,5 +1,6 @@
 /* The list of strangers: one thread changes it, another one reads it. */
 #include <pthread.h>
+#include <sched.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -43,6 +44,8 @@ static void test_a_reader_beside_the_writer_gets_one_list(void)
     pthread_t thread;
     unsigned lists = 0;
     TEST_ASSERT_EQUAL_INT(0, pthread_create(&thread, NULL, change, NULL));
+    while (cm1e_strangers_count(&bus->search.strangers) == 0) /* on a busy machine the thread begins late */
+        sched_yield();
     for (unsigned n = 0; n < 2000000; n++) {
         cm1e_stranger_t strangers[CM1E_STRANGERS];
         const size_t count = cm1e_bus_strangers(bus, strangers, CM1E_STRANGERS);
