@@ -5,7 +5,9 @@
  * other, in addition to the motion of the axis, whose maximum velocity leaves room for the ramp. Until the ramp ends,
  * the load is not where the set-point has it: it rests until the motor reaches the flank. Without our set-points (no
  * torque, homing by the drive) the offset is the one that the positions of the motor say: a ramp that ended on its way
- * has not moved the load. At the start the offset is unknown, and the positive flank is assumed to be closed.
+ * has not moved the load. So it is while a motor that turned when it got its torque is brought to rest: that ramp is
+ * one of the motor, wherever it is in its gap. At the start the offset is unknown, and the positive flank is assumed to
+ * be closed.
  *
  * All other parts of the axis know only the load: its set-point, its actual position, its lag.
  */
@@ -43,12 +45,23 @@ double cm1e_axis_backlash_offset(const cm1e_axis_t *axis) { return sign(axis) * 
 
 double cm1e_axis_backlash_velocity(const cm1e_axis_t *axis) { return sign(axis) * axis->backlash.offset_velocity; }
 
-bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis) { return axis->backlash.offset_velocity == 0.0; }
+/* Whether the motor has torque, and is not taken over yet: its target is that of a motor that comes to rest. */
+static bool catches(const cm1e_axis_t *axis)
+{
+    return !axis->power.energized && !axis_free(axis) && !drive_moves(axis);
+}
 
-/* Whether the motor does not follow our set-points. */
+/* Whether the motor does not follow set-points of the load. */
 static bool foreign(const cm1e_axis_t *axis)
 {
-    return axis_free(axis) || (drive_homes(axis) && axis->homing_hooks->is_away(axis));
+    return axis_free(axis) || catches(axis) || (drive_homes(axis) && axis->homing_hooks->is_away(axis));
+}
+
+double cm1e_axis_backlash_slip(const cm1e_axis_t *axis) { return sign(axis) * axis->backlash.slip; }
+
+bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis)
+{
+    return axis->backlash.offset_velocity == 0.0 && !(catches(axis) && axis->backlash.offset != axis->backlash.seen);
 }
 
 static double in_gap(const backlash_t *b, double place) { return fmax(-b->gap, fmin(place, 0.0)); }
@@ -59,9 +72,15 @@ void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts)
 {
     backlash_t *b = &axis->backlash;
     const double step = axis->observed ? b->velocity * axis->cycle_s : b->gap, off = b->offset - b->seen;
+    const double before = b->offset;
     b->seen = in_gap(b, b->seen + sign(axis) * moved_counts);
-    if (foreign(axis))
-        b->target = b->offset = in_gap(b, b->seen + fmax(off - step, fmin(0.0, off + step)));
+    b->slip = 0.0;
+    if (!foreign(axis))
+        return;
+    b->target = b->offset = in_gap(b, b->seen + fmax(off - step, fmin(0.0, off + step)));
+    b->slip = b->offset - before;
+    if (catches(axis) && b->slip != 0.0) /* the target of the motor stays where it is */
+        cm1e_axis_shift_motion(axis, sign(axis) * -b->slip);
 }
 
 /* Moves the offset on by a cycle: as fast as allowed, and slow enough to stop at its target. */

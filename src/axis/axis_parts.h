@@ -211,6 +211,7 @@ typedef struct backlash {
     double seen;                   /**< -gap ... 0: the same by the positions of the motor, which moves its load by a
                                         flank only */
     double offset_velocity, target;
+    double slip;                   /**< by how much it has changed at the last position of a motor without torque */
     double gap;                    /**< 0: no backlash */
 } backlash_t;
 

@@ -271,14 +271,19 @@ static double away_from_set_point(const cm1e_axis_t *axis)
     return cm1e_position_minus(axis_actual(axis), axis->setpoint.position);
 }
 
+/* counts; of a motor without torque in this cycle. The set-point is where its load was in the cycle before. */
+static double way_of_cycle(const cm1e_axis_t *axis)
+{
+    return away_from_set_point(axis) + cm1e_axis_backlash_slip(axis);
+}
+
 /* counts/s; the least that tells this velocity, the one of the cycle before, what both come to in the next cycle, and
  * the way since then. So one untrue value turns nothing, and the motor is not driven where the drive brakes it
  * already. */
 static double coasting_velocity(const cm1e_axis_t *axis)
 {
     const double now = axis_actual_velocity(axis), before = axis->power.velocity;
-    const double way = away_from_set_point(axis);
-    const double others[] = {before, 2.0 * now - before, way / axis->cycle_s};
+    const double others[] = {before, 2.0 * now - before, way_of_cycle(axis) / axis->cycle_s};
     double least = fabs(now);
     for (size_t i = 0; i < sizeof others / sizeof others[0]; i++)
         least = fmin(least, others[i] * now > 0.0 ? fabs(others[i]) : 0.0);
@@ -492,12 +497,12 @@ bool cm1e_axis_catches(const cm1e_axis_t *axis)
 
 /* counts/s; the velocity that the drive shows, if the way since the cycle before says so too; 0: it is not known. Where
  * positions tell it, the first one behind a silence is the mean of all its cycles, and a frame that comes too early
- * shows it once more. Where there is backlash the way is that of the load, which a flank may just have met. */
+ * shows it once more. */
 static double velocity_of_cycle(const cm1e_axis_t *axis)
 {
     static const double close_part = 0.8;
     const double shown = axis_actual_velocity(axis);
-    const double by_way = away_from_set_point(axis) / axis->cycle_s;
+    const double by_way = way_of_cycle(axis) / axis->cycle_s;
     const bool agrees = shown * by_way > 0.0 && fabs(by_way) >= close_part * fabs(shown);
     return agrees && axis->silence.silent_before == 0 ? shown : 0.0;
 }

@@ -122,6 +122,12 @@ static inline void cm1e_axis_shift_profile(cm1e_axis_t *axis, double counts)
     axis->setpoint.target = cm1e_position_plus(axis->setpoint.target, counts);
     cm1e_axis_renew_base_line(axis);
 }
+/** Shifts the set-point with it; no slave may follow that. */
+static inline void cm1e_axis_shift_motion(cm1e_axis_t *axis, double counts)
+{
+    cm1e_axis_jump(axis, cm1e_position_plus(axis->setpoint.position, counts));
+    cm1e_axis_shift_profile(axis, counts);
+}
 /** Cycles: a profile that ends so shortly after a set-point counts as ended. */
 static const double profile_same_moment = 1e-6;
 /** Counts: a set-point that is farther from the begin of its profile counts from a new base. At this distance a double

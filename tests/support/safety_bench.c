@@ -290,7 +290,10 @@ static void judge_step(const bench_t *bench, uint32_t n, witness_t *w, double st
     w->eased_cycles = step * w->direction < 0 ? 0 : within && change <= w->max_gain + 1.0 ? w->eased_cycles + 1 : 0;
     w->turning = step * w->direction < 0 || (w->turning && w->eased_cycles < 20);
     w->direction = step != 0 ? step : w->direction;
-    const bool smooth = (fabs(step - w->step) <= most && (w->turning || within)) || goes_after(w, step);
+    const bool after = goes_after(w, step), like_ramp = fabs(step - w->ramp_step) <= most;
+    const bool smooth = (fabs(step - w->step) <= most && (w->turning || within)) || after || like_ramp;
+    const bool begins = after && bench_info(bench, n).state == CM1E_AXIS_DISABLED;
+    w->ramp_step = begins ? counts_between(w->target, w->position) : NAN;
     w->set_points++;
     if (!(slow && smooth) && began_anew(bench, n, w, step)) {
         w->step = step == 0 ? 0 : (double)(int32_t)((uint32_t)w->target - (uint32_t)w->position);

@@ -52,6 +52,8 @@ typedef struct witness {
     uint16_t controlword;
     int32_t target;
     double step;
+    double ramp_step;                  /**< NAN, or `step` if the ramp of a motor that turned when it got its torque has
+                                            just begun where the motor is, which was ahead of its target */
     double velocity;                   /**< counts/s that 0x60FF asks for */
     bool silent;                       /**< no answer since `step`: the drive may hold this target or an earlier one */
     double direction;                  /**< the last step that was one */
