@@ -113,6 +113,28 @@ void cm1e_axis_begin_anew(cm1e_axis_t *axis, double velocity)
         profile_anew(axis);
 }
 
+/* Whether it only brakes, without a target. */
+static bool only_brakes(const cm1e_axis_t *axis)
+{
+    const bool stops = axis->commands.kind == CM1E_COMMAND_STOP || axis->commands.kind == CM1E_COMMAND_HALT;
+    return (stops || !axis->commands.active) && axis->setpoint.source == &cm1e_source_profile &&
+           !axis->homing_step.after_stop && !axis->superimposed.id;
+}
+
+/* In CSV the motor has gone on with the set velocity. A ramp down to standstill goes on from there: if it began anew in
+ * every pause, with a limit of jerk, it would not brake where every cycle is late. */
+static void go_on_after_pause(cm1e_axis_t *axis, double pause_s)
+{
+    const double way = axis->setpoint.velocity * axis->position.scale * pause_s; /* counts */
+    cm1e_axis_shift_set_point(axis, way);
+    if (!only_brakes(axis)) {
+        cm1e_axis_begin_anew(axis, axis->setpoint.velocity);
+        return;
+    }
+    lost_speed(axis, 0.0);
+    cm1e_axis_shift_profile(axis, way);
+}
+
 void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
 {
     const bool goes_on = axis->mode == CM1E_MODE_CSV;
@@ -130,8 +152,9 @@ void cm1e_axis_after_pause(cm1e_axis_t *axis, int64_t pause_ns)
         return;
     cm1e_axis_pursuit_prepare(axis, (double)pause_ns * 1e-9);
     if (goes_on)
-        cm1e_axis_shift_set_point(axis, axis->setpoint.velocity * axis->position.scale * (double)pause_ns * 1e-9);
-    cm1e_axis_begin_anew(axis, goes_on ? axis->setpoint.velocity : 0.0);
+        go_on_after_pause(axis, (double)pause_ns * 1e-9);
+    else
+        cm1e_axis_begin_anew(axis, 0.0);
 }
 
 /* ---- silence ----------------------------------------------------------------------------------------------------- */

@@ -14,20 +14,21 @@
 enum { ENABLED_AT = 3, MOVED_AT = 60, LATE_AT = 120, ENOUGH_MS = 2300, SETTLED_MS = 500 };
 
 static const double velocity = 10, acceleration = 50; /* u/s, u/s2 */
-enum { IN_VELOCITY_AT = MOVED_AT + 200 };
+enum { IN_VELOCITY_AT = MOVED_AT + 200, RAMP_MS = 160 };
 
-typedef enum deed { DEED_NONE = 0, DEED_POWER_OFF, DEED_STOP, DEED_HOME, DEEDS } deed_t;
+typedef enum deed { DEED_NONE = 0, DEED_POWER_OFF, DEED_STOP, DEED_HALT, DEED_HOME, DEEDS } deed_t;
 
 typedef struct run {
     machine_t machine;
     MC_Power_t power;
     MC_MoveVelocity_t turn;
     MC_Stop_t stop;
+    MC_Halt_t halt;
     MC_Home_t home;
     deed_t deed;                          /**< what the program does while the cycles are late */
     int late_at, late_ms, enough_ms, cycles, late_cycles;
     bool told;                            /**< the axis is in ErrorStop with the words of this error */
-    double lag;                           /**< u */
+    double lag, set_velocity;             /**< u, u/s */
     double ahead, left;                   /**< u, of v * t: of the set-point at first, and the largest change since */
     void (*program)(void *context);
     cm1e_sim_probe_t probe;
@@ -41,6 +42,7 @@ static void look(run_t *run)
     cm1e_axis_error_text(run->machine.axis[0], text, sizeof text);
     cm1e_sim_probe(cm1e_bus_segment(run->machine.bus), 1, &run->probe);
     run->lag = info.position_lag;
+    run->set_velocity = info.set_velocity;
     run->told = info.state == CM1E_AXIS_ERROR_STOP && strstr(text, "every cycle ");
 }
 
@@ -59,6 +61,8 @@ static void program(void *context)
     MC_Home(&run->home);
     run->stop.Execute = run->deed == DEED_STOP && run->late_cycles > 5;
     MC_Stop(&run->stop);
+    run->halt.Execute = run->deed == DEED_HALT && run->late_cycles > 5;
+    MC_Halt(&run->halt);
     if (run->cycles < run->late_at)
         return;
     run->late_cycles++;
@@ -74,6 +78,7 @@ static run_t run_late(run_t run)
     run.power = (MC_Power_t){.Axis = axis, .EnablePositive = TRUE, .EnableNegative = TRUE};
     run.turn = (MC_MoveVelocity_t){.Axis = axis, .Velocity = velocity, .Acceleration = acceleration};
     run.stop = (MC_Stop_t){.Axis = axis};
+    run.halt = (MC_Halt_t){.Axis = axis};
     run.home = (MC_Home_t){.Axis = axis};
     machine_add(&run.machine, "turn", 0, 0, run.program, &run);
     machine_run(&run.machine, run.program == program ? 0 : 700 * MS);
@@ -142,6 +147,29 @@ START_TEST(test_where_each_cycle_misses_one_or_two_a_motor_in_csv_comes_to_rest)
 }
 END_TEST
 
+static void stops(deed_t deed, int at, int late_ms)
+{
+    const run_t run = run_late((run_t){
+        .machine = {.axis_count = 1, .mapping = CM1E_MAPPING_CSV, .max_jerk = 2000}, .program = program, .deed = deed,
+        .late_at = at, .late_ms = late_ms, .enough_ms = RAMP_MS * (late_ms + 1) + SETTLED_MS});
+    const double speed = run.probe.velocity_counts_per_s;
+    ck_assert_msg(run.set_velocity == 0.0 && fabs(speed) < 10 && fabs(run.lag) <= 3 / COUNTS && !run.told,
+                  "deed %d, from cycle %d on by %d ms: set velocity %g u/s, %g counts/s, lag %g u, told %d", (int)deed,
+                  at, late_ms, run.set_velocity, speed, run.lag, run.told);
+}
+
+/** The ramp, with its limit of jerk, goes on by a cycle in each: it takes as many times longer. */
+START_TEST(test_a_stop_in_csv_ends_also_where_each_cycle_misses_more)
+{
+    static const int late_ms[] = {3, 4, 5};
+    static const deed_t deeds[] = {DEED_STOP, DEED_HALT, DEED_POWER_OFF};
+    for (size_t i = 0; i < sizeof late_ms / sizeof late_ms[0]; i++)
+        for (size_t d = 0; d < sizeof deeds / sizeof deeds[0]; d++)
+            for (int at = IN_VELOCITY_AT - 3; at < IN_VELOCITY_AT + 3; at++)
+                stops(deeds[d], at, late_ms[i]);
+}
+END_TEST
+
 /** Every tenth cycle takes 5.9 ms. u: by how much the set-point has left v * t until now. */
 static void pause_now_and_then(void *context)
 {
@@ -179,6 +207,7 @@ int main(void)
     tcase_set_timeout(cases, 60);
     tcase_add_test(cases, test_the_position_loop_of_csv_goes_on_in_late_cycles);
     tcase_add_test(cases, test_where_each_cycle_misses_one_or_two_a_motor_in_csv_comes_to_rest);
+    tcase_add_test(cases, test_a_stop_in_csv_ends_also_where_each_cycle_misses_more);
     tcase_add_test(cases, test_a_pause_of_csv_that_ends_within_a_cycle_shifts_the_set_point_by_whole_cycles);
     tcase_add_test(cases, test_where_every_cycle_is_late_no_axis_keeps_its_torque);
     suite_add_tcase(suite, cases);

@@ -11,6 +11,7 @@ void machine_open(machine_t *machine)
     }
     for (uint32_t i = 0; i < machine->axis_count && !machine->bridged; i++) {
         config.axes[i].mapping = machine->mapping;
+        config.axes[i].max_jerk = machine->max_jerk;
         config.axes[i].sim.load_inertia = machine->load_inertia;
     }
     for (uint32_t i = 0; i < machine->axis_count; i++)

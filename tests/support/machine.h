@@ -24,6 +24,7 @@ typedef struct machine {
     bool bridged;                        /**< all axes are CM1 behind one bridge */
     cm1e_axis_type_t types[MACHINE_AXES];
     cm1e_mapping_t mapping;              /**< of all motors */
+    double max_jerk;                     /**< u/s3, of all motors; 0: the default */
     double load_inertia;                 /**< kg m2, of all motors; 0: the default */
     cm1e_scheduler_config_t config;
     cm1e_bus_t *bus;
