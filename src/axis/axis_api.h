@@ -355,8 +355,9 @@ CM1E_GUEST_API const cm1e_axis_config_t *cm1e_axis_configuration(const cm1e_axis
  *  it acts again when a living program calls it. `task` must outlive the axis. @rt cycle */
 void cm1e_axis_lose_program(cm1e_axis_t *axis, const char *task, int64_t limit_ns);
 /** For so long no frame was sent that a drive with a watchdog has taken its torque off by itself. So does one without:
- *  ErrorStop, if the axis has torque or is about to get it. Called after cm1e_axis_after_pause(). @rt cycle */
-void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns);
+ *  ErrorStop, if the axis has torque or is about to get it. `now_ns`: the end of that time. Called after
+ *  cm1e_axis_after_pause(). @rt cycle */
+void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns, int64_t now_ns);
 /** For so long every cycle was late. In none of them a set-point moves, so no motion, and no ramp either, would ever
  *  end: ErrorStop, as above, and the torque goes at once, also in the ramp of an error before. Called after
  *  cm1e_axis_after_pause() or cm1e_axis_hold_cycle(). @rt cycle */

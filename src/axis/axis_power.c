@@ -109,8 +109,9 @@ static bool needs_program(const cm1e_axis_t *axis)
     return torque && axis->config->type != CM1E_AXIS_ENCODER;
 }
 
-void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns)
+void cm1e_axis_stood_still(cm1e_axis_t *axis, int64_t pause_ns, int64_t now_ns)
 {
+    axis->now_ns = now_ns; /* the inputs of this cycle may be from before the pause: the braking begins behind it */
     if (needs_program(axis))
         fail_without_program(axis, NULL, false, pause_ns);
 }

@@ -148,7 +148,7 @@ static void after_missed(cm1e_scheduler_t *s, cm1e_axis_t *axis, int64_t missed,
     else
         cm1e_axis_hold_cycle(axis, missed);
     if (silence_ns >= watchdog_ns)
-        cm1e_axis_stood_still(axis, silence_ns);
+        cm1e_axis_stood_still(axis, silence_ns, s->sent_ns);
     if (s->late_ns >= longest_late_ns)
         cm1e_axis_ran_late(axis, s->late_ns);
 }
