@@ -279,6 +279,15 @@ static bool next_eeprom(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now
     return write_registers(slave, d, REG_EEPROM_CONFIG, &(uint8_t){1}, 1);
 }
 
+static bool has_fmmus(const cm1e_bus_slave_t *slave) { return slave->placement.fmmu_count > 0; }
+
+static bool next_unmap(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
+{
+    static const uint8_t off[sizeof slave->placement.fmmus];
+    (void)now_ns;
+    return write_registers(slave, d, REG_FMMU0, off, slave->placement.fmmu_count * FMMU_BYTES);
+}
+
 /** A request to repeat an answer, sent before the slave lost its power, activates an empty SM1 if it comes after
  *  that. */
 static bool next_clear(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
@@ -300,8 +309,6 @@ static bool next_process_data(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64
     (void)now_ns;
     return write_registers(slave, d, REG_SM2, slave->placement.sync_managers[2], 2 * SYNC_MANAGER_BYTES);
 }
-
-static bool has_fmmus(const cm1e_bus_slave_t *slave) { return slave->placement.fmmu_count > 0; }
 
 static bool next_fmmus(cm1e_bus_slave_t *slave, cm1e_datagram_t *d, int64_t now_ns)
 {
@@ -519,6 +526,7 @@ static const cm1e_recovery_action_t actions[RECOVERY_STEPS] = {
     [RECOVERY_LOOK] = {STEP_NS, next_look, result_look},
     [RECOVERY_EEPROM] = {STEP_NS, next_eeprom, result_next_step},
     [RECOVERY_INIT] = {CM1E_STATE_TIMEOUT_NS, next_state, result_al, .what = CM1E_AL_INIT},
+    [RECOVERY_UNMAP] = {STEP_NS, next_unmap, result_next_step, .needed = has_fmmus},
     [RECOVERY_CLEAR] = {STEP_NS, next_clear, result_next_step},
     [RECOVERY_MAILBOX] = {STEP_NS, next_mailbox, result_next_step},
     [RECOVERY_PRE_OP] = {CM1E_STATE_TIMEOUT_NS, next_state, result_al, .what = CM1E_AL_PRE_OP},

@@ -21,6 +21,8 @@ typedef enum cm1e_recovery_step {
     RECOVERY_LOOK,           /**< reads AL status, which shows how much is left of the configuration */
     RECOVERY_EEPROM,         /**< gives the SII to the device */
     RECOVERY_INIT,
+    RECOVERY_UNMAP,          /**< takes its FMMUs away: where its sync managers are off, they reach its memory, and it
+                                  would seem to take part in the process data */
     RECOVERY_CLEAR,          /**< deactivates the sync managers: an active one takes no other values */
     RECOVERY_MAILBOX,        /**< SM0, SM1 */
     RECOVERY_PRE_OP,

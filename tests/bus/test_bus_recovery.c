@@ -390,6 +390,33 @@ START_TEST(slave_that_wants_to_be_led_up_from_init_comes_back)
 }
 END_TEST
 
+/** It has its FMMUs from before, and without active sync managers they reach its memory. */
+START_TEST(slave_that_is_led_up_from_init_seems_to_take_part_in_no_cycle_before_safe_op)
+{
+    stubborn_t stubborn = {.station = 0x1002};
+    int below = 0;
+    sim_config(2);
+    cm1e_bus_t *bus = start_bus();
+    cycles(bus, 20);
+    cm1e_sim_slave_fall_back(cm1e_sim_segment_slave(segment_of(bus), 2), CM1E_AL_SAFE_OP, 0x0021);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), refuse_before_init, &stubborn);
+    for (int n = 0; n < 3000 && state_of(bus, 2) != CM1E_AL_OP; n++) {
+        const bool was_below = state_of(bus, 2) < CM1E_AL_SAFE_OP;
+        const cm1e_error_t error = cycle(bus);
+        cm1e_bus_request_recovery(bus, 2);
+        if (!was_below || state_of(bus, 2) >= CM1E_AL_SAFE_OP)
+            continue;
+        below++;
+        ck_assert_msg(error == CM1E_ERROR_BUS_WORKING_COUNTER, "cycle %d below Safe-Operational: %d", below, error);
+    }
+    ck_assert_int_gt(below, 20);
+    cm1e_nic_set_tap(cm1e_bus_nic(bus), NULL, NULL);
+    ck_assert_uint_gt(cycles_until_recovered(bus, 3000), 0);
+    check_all_run(bus);
+    cm1e_bus_close(bus);
+}
+END_TEST
+
 /** The slave takes the request for Operational and stays in Safe-Operational. */
 static cm1e_tap_verdict_t stay_in_safe_op(void *context, cm1e_tap_frame_t *frame)
 {
@@ -485,6 +512,7 @@ int main(void)
     tcase_add_test(tests, sdo_to_a_lost_slave_ends_and_works_again_after_recovery);
     tcase_add_test(tests, sdo_keeps_its_time_while_its_slave_stays_in_safe_op);
     tcase_add_test(tests, slave_that_wants_to_be_led_up_from_init_comes_back);
+    tcase_add_test(tests, slave_that_is_led_up_from_init_seems_to_take_part_in_no_cycle_before_safe_op);
     tcase_add_loop_test(tests, io_module_comes_back_without_being_asked, 0, 3);
     suite_add_tcase(suite, tests);
     return run_suite(suite);
