@@ -149,7 +149,7 @@ void cm1e_axis_keep_torque(cm1e_axis_t *axis, double velocity)
 void cm1e_axis_hold_unheard(cm1e_axis_t *axis)
 {
     const bool moves = set_points_move(axis);
-    if (axis->mode != CM1E_MODE_CSP || cm1e_drive_is_virtual(&axis->drive) ||
+    if (axis->mode == CM1E_MODE_CSV || cm1e_drive_is_virtual(&axis->drive) ||
         !(moves || !cm1e_axis_backlash_at_rest(axis)))
         return;
     cm1e_axis_keep_torque(axis, axis->setpoint.velocity + cm1e_axis_backlash_velocity(axis) / axis->position.scale);
@@ -472,8 +472,7 @@ static void brake_or_hold(cm1e_axis_t *axis)
  * it with all of its torque, and pull it back from where that ends. The axis is taken over when both rest. */
 static void take_over_or_brake(cm1e_axis_t *axis)
 {
-    const bool set_points = axis->mode == CM1E_MODE_CSP || axis->mode == CM1E_MODE_CSV;
-    if (!set_points || cm1e_drive_is_virtual(&axis->drive) || axis->power.energized) {
+    if (cm1e_drive_is_virtual(&axis->drive) || axis->power.energized) {
         if (is_relieved(axis))
             take_over(axis);
         return;

@@ -65,7 +65,7 @@ static bool has_to_stop(cm1e_axis_t *axis)
 
 static bool may_pursue(const cm1e_axis_t *axis)
 {
-    return axis->mode == CM1E_MODE_CSP && !cm1e_drive_is_virtual(&axis->drive) && set_points_move(axis) &&
+    return axis->mode != CM1E_MODE_CSV && !cm1e_drive_is_virtual(&axis->drive) && set_points_move(axis) &&
            (!axis_led(axis) || axis->leader->strays);
 }
 

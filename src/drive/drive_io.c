@@ -336,8 +336,7 @@ static bool take_position(cm1e_drive_t *drive, const uint8_t *in, int32_t positi
     cm1e_drive_feedback_t *f = &drive->feedback;
     cm1e_drive_actual_t *actual = &drive->actual;
     const bool possible = can_be_there(drive, position);
-    const bool own_targets = mode == CM1E_MODE_CSP || mode == CM1E_MODE_CSV || mode == CM1E_MODE_PP ||
-                             mode == CM1E_MODE_PV;
+    const bool own_targets = drive->mode.shown && drive->mode.shown->target != CM1E_NO_ROLE;
     if (!possible && drive->torque.was_enabled && own_targets) {
         if (actual->rejected < UINT8_MAX)
             actual->rejected++;

@@ -2,6 +2,7 @@
 #include <math.h>
 
 #include "cia402/cia402.h"
+#include "device/bridge_facts.h"
 #include "scenario_private.h"
 
 #define RESTS_S 3e-3            /* docs/SAFETY.md: of the deceleration of the axis, */
@@ -24,7 +25,8 @@ static bool is_loaded(const run_t *run, const machine_axis_t *axis)
 /** In the other modes of a bridge its motor gets no set-points: it holds by itself (docs/SAFETY.md). */
 static bool has_set_points(const machine_axis_t *axis)
 {
-    return axis->info.mode == CM1E_MODE_CSP || axis->info.mode == CM1E_MODE_CSV;
+    const int mode = (int)axis->info.mode;
+    return mode == CM1E_MODE_CSP || mode == CM1E_MODE_CSV || mode == CM1E_BRIDGE_MODE_CPIO;
 }
 
 double signed_speed(const machine_axis_t *axis)
