@@ -254,8 +254,10 @@ static bool is_down(run_t *run, machine_axis_t *axis)
     /* A motor behind a bridge may hold its position by itself when it gets its supply (docs/SAFETY.md). */
     const bool rests = axis->seen.rest_cycles >= cycles_of(run, REST_MS);
     const bool free = !axis->probe.torque_on || (axis->channel > 0 && rests);
-    /* Enabled before a stop, it is braked into that. The way back to csp needs a motor at rest (docs/SAFETY.md). */
-    const bool coasts = (axis->spec->stops != 0 || elsewhere) && fabs(axis->probe.velocity_counts_per_s) > TURNING;
+    /* Enabled before a stop, it is braked into that. The way back to csp needs a motor that rests for some time
+     * (docs/SAFETY.md): MC_Power of the program, which began it, may fail until then, and MC_Reset comes after that. */
+    const bool turns = axis->spec->stops != 0 && fabs(axis->probe.velocity_counts_per_s) > TURNING;
+    const bool coasts = turns || (elsewhere && !rests);
     const bool pushed = run->cycle <= axis->seen.pushed_until; /* by a load, and it has not come to rest since */
     return (state == CM1E_AXIS_DISABLED || state == CM1E_AXIS_ERROR_STOP) && free && !coasts && !pushed;
 }
