@@ -98,7 +98,8 @@ void cm1e_sim_bridge_axis_begin_csp(cm1e_sim_bridge_axis_t *axis)
         return;
     }
     const double goal = target(axis);
-    if (fabs(goal - axis->mechanics.position) > STEP_AT_START_COUNTS)
+    /* A motor that does not hear begins nothing, and nobody knows where it is. */
+    if (!axis->unplugged && fabs(goal - axis->mechanics.position) > STEP_AT_START_COUNTS)
         axis->broken_rules |= CM1E_SIM_STEP_AT_START;
     cm1e_sim_line_begin(&axis->line, &axis->servo, goal);
 }

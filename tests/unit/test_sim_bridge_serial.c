@@ -191,6 +191,24 @@ static void test_a_load_pulls_at_the_shaft(void)
     TEST_ASSERT_DOUBLE_WITHIN(0.006, 0.02, probe(1).torque_nm); /* friction takes its part */
 }
 
+/* Its target is the last position that was heard: the bridge may say that it is enabled, but the motor begins nothing. */
+static void test_a_turning_motor_that_is_unplugged_begins_no_motion(void)
+{
+    static const uint16_t words[] = {0x06, 0x07, 0x0F};
+    accept("motor 1 4 load 0.02"); /* a CM2 is free after power-on */
+    bench_cycles(&b, 20);
+    accept("motor 1 4 unplug");
+    for (int i = 0; i < 3; i++) {
+        b.axes[3].target = b.axes[3].position;
+        b.axes[3].controlword = words[i];
+        bench_cycles(&b, 2);
+    }
+    TEST_ASSERT_EQUAL_HEX16(0x07, b.axes[3].statusword & STATE_BITS);
+    TEST_ASSERT_TRUE(probe(4).position_counts - b.axes[3].position > 100);
+    TEST_ASSERT_FALSE(probe(4).torque_on);
+    TEST_ASSERT_EQUAL_HEX(0, probe(4).broken_rules);
+}
+
 static void test_a_probe_tells_what_a_motor_really_does(void)
 {
     bench_enable(&b, 1);
@@ -265,6 +283,7 @@ int main(void)
     RUN_TEST(test_no_cml_goes_to_an_unplugged_motor);
     RUN_TEST(test_inputs_are_held_and_follow_the_axis_again);
     RUN_TEST(test_a_load_pulls_at_the_shaft);
+    RUN_TEST(test_a_turning_motor_that_is_unplugged_begins_no_motion);
     RUN_TEST(test_a_probe_tells_what_a_motor_really_does);
     RUN_TEST(test_frames_that_come_a_little_early_do_not_jolt_a_motor);
     return UNITY_END();
