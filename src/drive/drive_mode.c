@@ -213,7 +213,9 @@ static bool expired(cm1e_drive_t *drive)
 
 static void give_up(cm1e_drive_t *drive)
 {
+    const bool kept_back = !drive->change.uncertain && drive->mode.wanted->rest && !cm1e_drive_rests(drive);
     cm1e_drive_fail(drive, CM1E_ERROR_DRIVE_MODE_TIMEOUT);
+    drive->fault.turned |= kept_back;
     drive->change.phase = PHASE_GIVEN_UP;
     drive->change.shown = drive->change.read;
 }

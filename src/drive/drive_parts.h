@@ -72,6 +72,7 @@ typedef struct cm1e_drive_fault {
     bool slave_lost : 1;            /**< the slave did not answer at its address, then or later */
     bool slave_absent : 1;          /**< the slave took no part in the cycle, then or later */
     bool keeps_torque : 1;          /**< the drive did not obey when it was told to have none, then or later */
+    bool turned : 1;                /**< the mode was not written, because the motor was not at rest */
 } cm1e_drive_fault_t;
 
 typedef struct cm1e_drive_encoder {

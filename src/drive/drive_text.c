@@ -70,6 +70,8 @@ static const char *advice(const cm1e_drive_t *drive)
         cm1e_fsa_decode_by(states, drive->fault.statusword) == QUICK_STOP_ACTIVE)
         return "The drive has begun a quick stop by itself. Check its limit switches, its input for a quick stop, and "
                "whether another tool controls it";
+    if (error == CM1E_ERROR_DRIVE_MODE_TIMEOUT && drive->fault.turned)
+        return "The motor turned, so the mode was not written. Let it come to rest";
     for (size_t i = 0; i < sizeof advices / sizeof advices[0]; i++)
         if (advices[i].error == error)
             return advices[i].text;

@@ -187,6 +187,7 @@ static void test_a_motor_that_never_rests_ends_in_a_timeout_without_a_write(void
     TEST_ASSERT_EQUAL_UINT(0, writes_of_mode());
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_DRIVE_MODE_TIMEOUT, drive.fault.error);
     bench_text_has("101 (CML) commanded, 8 (CSP) shown");
+    bench_text_has("The motor turned, so the mode was not written. Let it come to rest");
     bench_text_has("at standstill");
     fake_bridge.shortest_mode_interval_ns = INT64_MAX;
 }
