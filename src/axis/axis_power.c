@@ -423,7 +423,7 @@ static void wait_for_rest(cm1e_axis_t *axis)
     power_t *power = &axis->power;
     const double velocity = axis_actual_velocity(axis);
     const uint16_t now_ms = (uint16_t)(axis->now_ns / MS_IN_NS);
-    const bool first = !power->held, unseen = first || (power->undecided > 0 && shows_motor(axis));
+    const bool first = !power->held, seen_again = power->undecided > 0 && shows_motor(axis);
     if (first) {
         power->held_ms = now_ms;
         power->velocity = (float)fabs(velocity);
@@ -435,11 +435,13 @@ static void wait_for_rest(cm1e_axis_t *axis)
         return;
     const double slow = slow_velocity(axis);
     const double away = away_from_set_point(axis);
+    /* The first cycle of a pause has the time of its inputs: the moment begins behind its end. */
+    const bool unseen = seen_again && !first && !power->energized;
     if (runs_away(axis, away, velocity, slow))
         power->held_ms = (uint16_t)(now_ms - longest_swing_ms);
     else if (comes_back(axis, away, velocity)) /* else it would be pulled back as hard as it was braked, to and fro */
         power->turning = go_to_motor(axis, away) ? 0 : BACK;
-    else if (fabs(velocity) > slow || (unseen && is_far(axis, away)))
+    else if (fabs(velocity) > slow || unseen || ((first || seen_again) && is_far(axis, away)))
         power->brake_until_ns = later(power->brake_until_ns, axis->now_ns + brake_ns);
 }
 
