@@ -5,9 +5,10 @@
  * missing, and is beyond that target when the next one comes. If the motion began anew there, the servo would pull the
  * load back, even backwards, and the motor would exceed its maximum velocity while it catches up afterwards. So the
  * set-point first goes after the motor, never faster than before the silence or pause, and slower when it is near. The
- * motion begins anew where both meet. A slave makes up its distance to its master then, and slaves of the axis, which
- * see another velocity of their master, catch up. An axis of a group comes to rest, and goes back to its path, which
- * waits.
+ * motion begins anew where both meet. If the drive has turned the motor round already, the set-point meets it on its way
+ * back: the motor would swing to and fro about one that is far behind it. A slave makes up its distance to its master
+ * then, and slaves of the axis, which see another velocity of their master, catch up. An axis of a group comes to rest,
+ * and goes back to its path, which waits.
  *
  * A slave, a motion made of several, and a path go on after one or two cycles instead.
  *
@@ -145,9 +146,20 @@ static bool is_too_slow(const cm1e_axis_t *axis)
     return axis_led(axis) && fabs(axis->setpoint.pursuit.velocity) < least_part * speed_of_motor(axis);
 }
 
+/* Whether the set-point goes to a motor that the drive has turned round already. That takes longer than the few cycles
+ * after which a motor behind a bridge may seem to rest. A slave, an axis of a path and the ramp of an error do not, nor
+ * does a homing, which may press. */
+static bool meets_on_way_back(const cm1e_axis_t *axis)
+{
+    const bool stops = axis->state == CM1E_AXIS_STOPPING && axis_on_profile(axis) && !axis->homing_step.after_stop;
+    const bool moves = axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION || stops;
+    return moves && axis->setpoint.pursuit.unheard_s > (CM1E_AXIS_RIDDEN_OUT_CYCLES + 1) * axis->cycle_s;
+}
+
 static bool begin(cm1e_axis_t *axis)
 {
-    const bool ahead = speed_of_motor(axis) > 0.0 && is_too_far(axis) && !is_too_slow(axis);
+    const bool met = speed_of_motor(axis) > 0.0 || meets_on_way_back(axis);
+    const bool ahead = met && is_too_far(axis) && !is_too_slow(axis);
     axis->setpoint.pursuit.under_way = ahead;
     axis->setpoint.pursuit.holds = !ahead && axis->state == CM1E_AXIS_ERROR_STOP; /* it may come back already */
     if (!ahead && !axis->setpoint.pursuit.holds)

@@ -111,6 +111,26 @@ static void test_the_set_point_goes_after_a_motor_that_has_run_ahead(void)
         }
 }
 
+/** The pause is so long that the drive has turned the motor round: the set-point meets it on its way back. With a set-point
+ *  at rest, far behind it, it would swing, and be too fast where it comes to its speed again. */
+static void test_a_motor_that_is_on_its_way_back_is_met(void)
+{
+    static const double load = 8.0;
+    for (int run = 0; run < 2; run++)
+        for (int tenths = 10; tenths <= 14; tenths++) { /* of the time in which it stops */
+            const cm1e_command_id_t id = begin(run ? 1.0 : -1.0, load);
+            pause_for((int)(counts_of_cycle() / load) * tenths / 10);
+            TEST_ASSERT_TRUE(way * speed < 0.0);
+            axes_cycles(1);
+            TEST_ASSERT_TRUE(under_way() && ahead() > 5.0);
+            TEST_ASSERT_LESS_THAN_INT(60, pursue());
+            TEST_ASSERT_EQUAL_DOUBLE(0.0, axes_info(AXIS).set_velocity); /* they do not pass each other */
+            axes_wait(AXIS, id, 5000);
+            TEST_ASSERT_EQUAL_DOUBLE(way * TARGET, axes_info(AXIS).set_position);
+            TEST_ASSERT_TRUE(fastest <= counts_of_cycle() * 1.01);
+        }
+}
+
 /** It stops within its last target: the motion begins anew at once. */
 static void test_a_motor_without_a_load_is_not_gone_after(void)
 {
@@ -202,6 +222,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_the_set_point_goes_after_a_motor_that_has_run_ahead);
+    RUN_TEST(test_a_motor_that_is_on_its_way_back_is_met);
     RUN_TEST(test_a_motor_without_a_load_is_not_gone_after);
     RUN_TEST(test_a_motor_that_does_not_slow_down_is_gone_after_for_a_while);
     RUN_TEST(test_a_stop_meanwhile_stops_the_axis);
