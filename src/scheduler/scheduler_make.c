@@ -53,7 +53,7 @@ static cm1e_error_t make_axes(cm1e_scheduler_t *s, member_t *member, cm1e_diag_t
 {
     const uint32_t count = cm1e_bus_configuration(member->bus)->axis_count;
     member->first = member->end = s->axis_count;
-    for (uint32_t i = 0; i < count && s->axis_count < CM1E_MAX_AXES; i++) {
+    for (uint32_t i = 0; i < count; i++) { /* a bus has at most CM1E_MAX_AXES, and so have all of them together */
         const cm1e_error_t error = cm1e_axis_create(&s->axes[s->axis_count], member->bus, i, diag);
         if (error != CM1E_OK)
             return error;
