@@ -211,15 +211,17 @@ END_TEST
 
 /* ---- privileges ------------------------------------------------------------------------------------------------ */
 
-static void drop_privileges(void)
+/** No limit of the user allows anything, and of the capabilities these stay. false: this process does not have them. */
+static bool keep_capabilities(uint32_t kept)
 {
     const struct rlimit none = {0, 0};
     struct __user_cap_header_struct header = {.version = _LINUX_CAPABILITY_VERSION_3};
-    struct __user_cap_data_struct data[_LINUX_CAPABILITY_U32S_3] = {{0}};
-    ck_assert_int_eq(setrlimit(RLIMIT_RTPRIO, &none), 0);
-    ck_assert_int_eq(setrlimit(RLIMIT_MEMLOCK, &none), 0);
-    ck_assert_int_eq(syscall(SYS_capset, &header, data), 0);
+    struct __user_cap_data_struct data[_LINUX_CAPABILITY_U32S_3] = {{.effective = kept, .permitted = kept}};
+    return setrlimit(RLIMIT_RTPRIO, &none) == 0 && setrlimit(RLIMIT_MEMLOCK, &none) == 0 &&
+           syscall(SYS_capset, &header, data) == 0;
 }
+
+static void drop_privileges(void) { ck_assert(keep_capabilities(0)); }
 
 /** In a container that lacks a privilege, setcap does harm. */
 static const char *cure(void)
@@ -251,6 +253,31 @@ START_TEST(test_missing_privilege_is_advice_that_says_what_to_do)
         ck_assert_msg(strstr(s.advice, parts[i]), "\"%s\" is not in \"%s\"", parts[i], s.advice);
     ck_assert_msg(s.advice[strlen(s.advice) - 1] == '.', "cut off: %s", s.advice);
     ck_assert_uint_ge(s.cycles, 20);
+    machine_close(&machine);
+}
+END_TEST
+
+/** One of both is granted: the advice is about the other one, by its name. */
+START_TEST(test_advice_is_about_what_was_refused)
+{
+    static const struct {
+        uint32_t kept;
+        const char *refused;
+    } rows[] = {
+        {1u << CAP_IPC_LOCK, "Not real time: SCHED_FIFO refused."},
+        {1u << CAP_SYS_NICE, "Not real time: locked memory refused."},
+        {0, "Not real time: SCHED_FIFO and locked memory refused."},
+    };
+    machine_t machine = {.axis_count = 1, .real_time = true};
+    machine_open(&machine);
+    machine_add(&machine, "", 0, 0, stop_in_cycle_20, machine.scheduler);
+    if (keep_capabilities(rows[_i].kept)) {
+        machine_run(&machine, 0);
+        cm1e_scheduler_statistics_t s;
+        cm1e_scheduler_statistics(machine.scheduler, &s);
+        ck_assert_msg(strstr(s.advice, rows[_i].refused) == s.advice, "\"%s\"", s.advice);
+        ck_assert_msg(strstr(s.advice, cure()) && !strstr(s.advice, "has  in"), "\"%s\"", s.advice);
+    }
     machine_close(&machine);
 }
 END_TEST
@@ -403,6 +430,7 @@ static void add_short_tests(TCase *all)
     };
     for (size_t i = 0; i < sizeof tests / sizeof tests[0]; i++)
         tcase_add_test(all, tests[i]);
+    tcase_add_loop_test(all, test_advice_is_about_what_was_refused, 0, 3);
 }
 
 static Suite *make_suite(int part)

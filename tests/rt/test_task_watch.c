@@ -2,6 +2,7 @@
  * A task that does not return: the cycle goes on without it, all axes stop in a defined way, and texts name the task. In
  * real time, because on virtual time nothing shows how long a task takes.
  */
+#include <dirent.h>
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
@@ -350,6 +351,43 @@ START_TEST(test_the_signal_is_as_it_was_after_the_run)
 }
 END_TEST
 
+/** How many other threads there are, and of how many of them signals of the program may take the processor. */
+static void count_threads(void *context)
+{
+    int *counts = context;
+    DIR *threads = opendir("/proc/self/task");
+    counts[0] = counts[1] = 0;
+    for (const struct dirent *entry; (entry = readdir(threads));) {
+        char path[sizeof entry->d_name + 32], line[128];
+        snprintf(path, sizeof path, "/proc/self/task/%s/status", entry->d_name);
+        FILE *status = atol(entry->d_name) != gettid() && entry->d_name[0] != '.' ? fopen(path, "r") : NULL;
+        counts[0] += status != NULL;
+        while (status && fgets(line, sizeof line, status)) {
+            const uint64_t all = 1u << (SIGINT - 1) | 1u << (SIGTERM - 1) | 1u << (SIGALRM - 1);
+            if (strncmp(line, "SigBlk:", 7) == 0)
+                counts[1] += (strtoull(line + 7, NULL, 16) & all) != all;
+        }
+        if (status)
+            fclose(status);
+    }
+    closedir(threads);
+}
+
+/** In the thread of the watch a handler of the program would make it look late. */
+START_TEST(test_signals_of_the_program_are_for_its_own_threads)
+{
+    int counts[2] = {0};
+    memset(&t, 0, sizeof t);
+    t.machine = (machine_t){.axis_count = 1, .real_time = true};
+    machine_open(&t.machine);
+    machine_add(&t.machine, "", 0, 0, count_threads, counts);
+    machine_run(&t.machine, 50 * MS);
+    ck_assert_int_ge(counts[0], 1);
+    ck_assert_int_eq(counts[1], 0);
+    machine_close(&t.machine);
+}
+END_TEST
+
 START_TEST(test_a_limit_that_is_no_number_of_cycles_is_refused)
 {
     cm1e_diag_t diag = {0};
@@ -376,6 +414,7 @@ static Suite *make_suite(int part)
         tcase_add_loop_test(all, test_without_a_limit_and_within_it_a_task_goes_on, 0, 2);
         tcase_add_test(all, test_a_task_is_not_blamed_for_a_suspended_process);
         tcase_add_test(all, test_the_signal_is_as_it_was_after_the_run);
+        tcase_add_test(all, test_signals_of_the_program_are_for_its_own_threads);
         tcase_add_test(all, test_a_limit_that_is_no_number_of_cycles_is_refused);
     }
     suite_add_tcase(suite, all);

@@ -293,11 +293,17 @@ static void test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring
     trace_t trace = make_trace(3, 100);
     size_t size;
     cm1e_diag_t diag = {0};
-    for (uint32_t n = 0; n < 250; n++)
-        add_sample(&trace, n, 5)[TRACE_SET_POSITION] = 2147480000.25 + n; /* counts of 32 bits, and parts of them */
+    for (uint32_t n = 0; n < 250; n++) {
+        double *sample = add_sample(&trace, n, 5);
+        sample[TRACE_SET_POSITION] = 2147480000.25 + n; /* counts of 32 bits, and parts of them */
+        sample[TRACE_SET_VELOCITY] = 0.1;
+        sample[3 * TRACE_AXIS_COLUMNS + 3] = 9007199254740990; /* overruns */
+    }
     TEST_ASSERT_EQUAL_MESSAGE(CM1E_OK, cm1e_trace_write_file(&trace, csv_path, cm1e_trace_print_csv, &diag), diag.text);
     char *csv = read_file(csv_path, &size);
     TEST_ASSERT_NOT_NULL(strstr(csv, ",2147480249.25,"));
+    TEST_ASSERT_NOT_NULL(strstr(csv, ",0.1,")); /* not 0.10000000000000001 */
+    TEST_ASSERT_NOT_NULL(strstr(csv, ",9007199254740990,")); /* every digit of a number of events */
     TEST_ASSERT_EQUAL(101, count(csv, "\n"));
     TEST_ASSERT_NOT_NULL(strstr(csv, "\"gripper set position [u]\""));
     TEST_ASSERT_NOT_NULL(strstr(csv, "\"<&\"\"'>\x01 torque [%]\"")); /* RFC 4180: quotes doubled */
