@@ -164,6 +164,7 @@ static void check_output(st_t *st, const unit_t *unit, const expr_t *callee, arg
     cm1e_st_expression(st, arg->value);
     if (!cm1e_st_assignable(st, arg->value))
         return;
+    cm1e_st_note_change(st, arg->value);
     var_t *var = arg->parameter;
     var->type = cm1e_st_resolve(st, var->type);
     if (cm1e_st_is_function(unit)) {

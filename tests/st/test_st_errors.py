@@ -509,6 +509,52 @@ def check_bounds(folder):
         check_case(folder, PROGRAM.format(f"d1 := D#{day};"), "9:7", ["DATE"], day)
 
 
+# Each changes a global variable: its place is behind a "~". What is read only, or is of the function itself, may stand there.
+IN_FUNCTION = """VAR_GLOBAL g : INT; s : Pair; a : ARRAY[1..2] OF INT; fb : Block; b : BOOL; END_VAR
+TYPE Pair : STRUCT x : INT; END_STRUCT END_TYPE
+FUNCTION_BLOCK Block VAR n : INT; END_VAR VAR_OUTPUT o : INT; END_VAR METHOD M : INT n := n + 1; M := n; END_METHOD o := o + 1; END_FUNCTION_BLOCK
+FUNCTION Change : INT VAR_IN_OUT v : INT; END_VAR VAR_OUTPUT o : INT; END_VAR v := v + 1; o := v; END_FUNCTION
+FUNCTION F : INT VAR_EXTERNAL g : INT; s : Pair; a : ARRAY[1..2] OF INT; fb : Block; b : BOOL; END_VAR VAR i : INT; q : REF_TO INT; END_VAR
+{}
+END_FUNCTION PROGRAM Main VAR n : INT; END_VAR n := F(); END_PROGRAM"""
+CHANGES = ["~g := 1;", "s.~x := 1;", "~a[1] := 1;", "i := Change(v := ~g);", "i := Change(v := s.~x);", "i := Change(v := ~a[2]);",
+           "i := Change(v := i, o => ~g);", "~fb();", "i := ~fb.M();", "q := REF(~g);", "~b S= i = 0;",
+           "FOR ~g := 1 TO 2 DO i := i + 1; END_FOR"]
+READS = "i := g + s.x + a[1]; i := fb.o; i := Change(v := i, o => i); FOR i := g TO 2 DO F := i; END_FOR"
+
+
+def check_changes(folder):
+    if answer(folder, IN_FUNCTION.format(READS))[0]:
+        faults.append(f"a function that only reads has errors: {answer(folder, IN_FUNCTION.format(READS))[0]}")
+    for change in CHANGES:
+        check_case(folder, IN_FUNCTION.format(change.replace("~", "")), f"6:{change.index('~') + 1}",
+                   ["a function changes no global variable"], change)
+
+
+# How many arguments the functions of the standard have: the least, and the most (0: any number above it).
+ARITIES = {
+    (0, 0): "TIME",
+    (1, 1): "ABS SQRT LN LOG EXP SIN COS TAN ASIN ACOS ATAN TRUNC MOVE REF ADR __ISVALIDREF SIZEOF LEN",
+    (2, 2): "ATAN2 SHL SHR ROL ROR SUB DIV EXPT GT GE EQ NE LE LT LOWER_BOUND UPPER_BOUND LEFT RIGHT FIND",
+    (2, None): "MIN MAX ADD MUL CONCAT", (3, 3): "LIMIT SEL MID INSERT DELETE", (3, None): "MUX", (4, 4): "REPLACE",
+}
+
+
+def check_arities(folder):
+    """One argument too few, the least number, the most, one too many; what is refused is told with both numbers."""
+    cases = [(name, count, least <= count and (most is None or count <= most))
+             for (least, most), names in ARITIES.items() for name in names.split()
+             for count in {max(least - 1, 0), least, least + 1 if most is None else most, (most or least) + 1}]
+    for first in range(0, len(cases), 20): # no more errors are told of a file
+        some = cases[first:first + 20]
+        text = PROGRAM.format("\n".join(f"{name}({', '.join('i' * count)});" for name, count, _ in some))
+        found = {error["line"]: error["text"] for error in answer(folder, text)[0]}
+        for line, (name, count, good) in enumerate(some, 9):
+            text = found.get(line, "")
+            if good == ("argument" in text) or (not good and not text.endswith(f"; found {count}")):
+                faults.append(f"{name} of {count}: {text!r}")
+
+
 def damaged(source, generator):
     """A good program with some of its words changed, left out or doubled."""
     words = source.split(" ")
@@ -528,6 +574,8 @@ with tempfile.TemporaryDirectory() as folder:
     for source, place, words in SOURCES:
         check_case(folder, source, place, words, source)
     check_bounds(folder)
+    check_arities(folder)
+    check_changes(folder)
     for source in HUGE:
         errors, result = answer(folder, source)
         if any(not error["text"] for error in errors) or (result.returncode == 1) != bool(errors):
