@@ -119,15 +119,14 @@ static bool can_retype(const expr_t *call, type_kind_t to)
 }
 
 /** The literals, and with them the result, take the type that is wanted. */
-static bool retype(st_t *st, expr_t *call, type_t *type)
+static void retype(st_t *st, expr_t *call, type_t *type)
 {
     if (!can_retype(call, type->kind))
-        return false;
+        return;
     for (arg_t *arg = call->typed_args; arg; arg = arg->next)
         arg->value = give_type(st, arg->value, type);
     call->type = type;
     call->untyped = false;
-    return true;
 }
 
 /** A REFERENCE TO gets the reference that is behind the name, or the address of a variable. */
@@ -156,9 +155,8 @@ bool cm1e_st_is_place(const expr_t *expr)
 
 static expr_t *coerce(st_t *st, expr_t *expr, type_t *type, const char *what)
 {
+    retype(st, expr, type);
     const type_kind_t from = expr->type->kind, to = type->kind;
-    if (retype(st, expr, type))
-        return expr;
     if (expr->type == type || from == T_WRONG || to == T_WRONG)
         return expr;
     if (takes_literal(expr, to))

@@ -197,6 +197,9 @@ CASES = [
      {"s": b"-42", "i": 123, "l": 2.5, "b": 1}),
     ("i := SEL(TRUE, 1, 2); j := MUX(1, 10, 20, 30); n := LIMIT(MN := 0, IN := 9, MX := 5);", {"i": 2, "j": 20, "n": 5}),
     ("i := ADD(1, 2, 3); b := GT(3, 2); l := EXPT(2.0, 10); l := SQRT(l * l);", {"i": 6, "b": 1, "l": 1024.0}),
+    # Comparisons by name: of 1 with 2, of 2 with 2, and of 3 with 2.
+    *((f"i := 0; FOR j := 1 TO 3 DO n := 2; b := {name}(j, n); i := 2 * i; IF b THEN i := i + 1; END_IF END_FOR", {"i": bits})
+      for name, bits in (("LT", 4), ("LE", 6), ("EQ", 2), ("NE", 5), ("GE", 3), ("GT", 1))),
     ("b := FALSE; IF b AND_THEN q^ = 1 THEN i := 1; END_IF IF TRUE OR_ELSE q^ = 1 THEN j := 1; END_IF", {"i": 0, "j": 1}),
     ("i := 2#1010 + 8#17 + 16#F + 1_000;", {"i": 1040}),
     ("x64 := 18446744073709551615; x64 := x64 / 2; big := -9223372036854775808;", {"x64": 2 ** 63 - 1, "big": -2 ** 63}),
