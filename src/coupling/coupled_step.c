@@ -184,11 +184,10 @@ static void begin_anew(cm1e_axis_t *axis)
         (void)stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
         return;
     }
-    /* A slave that was in step makes up the distance. One that was still on its way does not (4.5, note 1). Nor does a
-     * motor in CSV that went on by itself: it is not moved back. */
+    /* A slave that was in step makes up the distance, also where its motor went on by itself (CSV) and that of its
+     * master did not. One that was still on its way does not (4.5, note 1). */
     const bool was_in_step = !c->catch_up.on || c->catch_up.made_up;
-    const bool comes_back = axis->mode == CM1E_MODE_CSP || axis->silence.silent_before > 0;
-    cm1e_catch_up_begin(axis, &from, &asked, rule_of(c->now->to_position || (was_in_step && comes_back)),
+    cm1e_catch_up_begin(axis, &from, &asked, rule_of(c->now->to_position || was_in_step),
                         across ? VELOCITY_FIRST : ALL_TOGETHER);
     show_synchronizing(axis);
     cm1e_axis_set_reached(axis, false);
