@@ -90,7 +90,7 @@ static bool step(cm1e_axis_t *axis)
         return stop_alone(axis, (guard_t){.limit = GUARD_KEPT});
     c->end_of_profile = false;
     c->now->function->evaluate(axis, c->now, &f);
-    if (coupling_gives_way(axis) || axis->superimposed.id ||
+    if (coupling_gives_way(axis) || c->settling > 0 || axis->superimposed.id ||
         !cm1e_axis_well_within(axis, &f, coupling_keeps_jerk(c))) {
         guard_t guard = cm1e_coupled_judge(axis, &f, &sum);
         if (guard.limit && cm1e_coupling_brakes_with_master(axis, guard)) {
@@ -101,6 +101,7 @@ static bool step(cm1e_axis_t *axis)
             return stop_alone(axis, guard);
         next = &sum;
     }
+    c->settling -= c->settling > 0;
     c->f_velocity = f.velocity;
     c->f_acceleration = f.acceleration;
     emit(axis, next);
@@ -160,6 +161,7 @@ void cm1e_coupling_follow(cm1e_axis_t *axis, follow_t *follow, const from_t *fro
     cm1e_coupling_list_links(follow);
     c->now = follow;
     c->end_of_profile = c->stopping = c->due = c->was_in_step = false;
+    c->settling = 0;
     cm1e_catch_up_begin(axis, from, asked, rule_of(c->now->to_position), ALL_TOGETHER);
     cm1e_axis_set_source(axis, &cm1e_source_coupling);
     if (!followed)
@@ -189,6 +191,7 @@ static void begin_anew(cm1e_axis_t *axis)
     const bool was_in_step = !c->catch_up.on || c->catch_up.made_up;
     cm1e_catch_up_begin(axis, &from, &asked, rule_of(c->now->to_position || was_in_step),
                         across ? VELOCITY_FIRST : ALL_TOGETHER);
+    c->settling = c->now->by_actual ? cm1e_coupling_settles_in(axis) : 0; /* or one lost frame would be an error */
     show_synchronizing(axis);
     cm1e_axis_set_reached(axis, false);
 }

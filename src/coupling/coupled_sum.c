@@ -117,7 +117,7 @@ static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdi
     if (!c->catch_up.on) {
         const from_t sum = cm1e_coupled_sum(axis, f);
         *verdict = judge_sum(axis, &sum);
-        if (!coupling_approaches(axis) || is_settled(verdict))
+        if ((!coupling_approaches(axis) && c->settling == 0) || is_settled(verdict))
             return sum;
         c->catch_up.on = c->catch_up.held_back = true;
     }
@@ -258,7 +258,7 @@ CM1E_RARE guard_t cm1e_coupled_judge(cm1e_axis_t *axis, const from_t *f, from_t 
     *next = *f;
     if (axis->superimposed.id)
         *next = with_superimposed(axis, f, &verdict);
-    else if (coupling_gives_way(axis))
+    else if (coupling_gives_way(axis) || axis->coupling->settling > 0)
         *next = with_catch_up(axis, f, &verdict);
     else
         return cm1e_axis_look_closely(axis, f, coupling_keeps_jerk(axis->coupling));

@@ -206,6 +206,8 @@ typedef struct coupling {
     approach_refused_t approach_refused;
     int32_t numerator;             /**< numerator and denominator of a ratio that was refused */
     uint32_t denominator;
+    uint32_t settling;             /**< cycles left in which lost frames or a pause disturb the estimate of an actual
+                                        value, so that the slave gives way to its limits */
 } coupling_t;
 
 /** Whether memory was set aside for a command that makes the axis follow (cm1e_axis_config_t.follows). */
@@ -363,6 +365,8 @@ cm1e_error_t cm1e_coupling_update(cm1e_axis_t *axis, cm1e_command_id_t id, const
 /* observe.c */
 /** Updates the actual value that slaves see. Called with the inputs of every cycle. */
 void cm1e_coupling_observe(cm1e_axis_t *axis);
+/** Cycles after which the estimates of the masters show no more of a disturbance. */
+uint32_t cm1e_coupling_settles_in(const cm1e_axis_t *axis);
 double cm1e_coupling_observed_velocity(const cm1e_axis_t *axis);
 /** The actual state of a master in this cycle, or in the previous one. MASTER_UNSEEN: no value has arrived for too
  *  long. */

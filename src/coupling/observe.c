@@ -10,6 +10,7 @@
 #include "axis/axis_setpoint.h"
 #include "axis/axis_signals.h"
 #include "cm1e/clocks.h"
+#include "core/extreme.h"
 #include "coupling/coupling_private.h"
 
 enum { DEFAULT_FILTER_CYCLES = 10 };
@@ -70,13 +71,17 @@ static double first_velocity(const cm1e_axis_t *axis)
                                            : axis->setpoint.velocity * axis->position.scale;
 }
 
+static double filter_s(const cm1e_axis_t *axis)
+{
+    const double asked_s = axis->config->encoder_filter_s;
+    return asked_s > 0.0 ? asked_s : DEFAULT_FILTER_CYCLES * axis->cycle_s;
+}
+
 static void begin(cm1e_axis_t *axis)
 {
     observed_t *own = &axis->followed->own;
-    const double constant_s = axis->config->encoder_filter_s, cycle_s = axis->cycle_s;
-    const double velocity = first_velocity(axis);
-    cm1e_observer_init(&own->filter, cycle_s, constant_s > 0.0 ? constant_s : DEFAULT_FILTER_CYCLES * cycle_s, cycle_s,
-                       axis_actual(axis).counts);
+    const double velocity = first_velocity(axis), cycle_s = axis->cycle_s;
+    cm1e_observer_init(&own->filter, cycle_s, filter_s(axis), cycle_s, axis_actual(axis).counts);
     own->filter.velocity = velocity;
     if (goes_as_told(axis))
         own->filter.acceleration = axis->setpoint.acceleration * axis->position.scale;
@@ -98,6 +103,13 @@ static void step_by_time(cm1e_axis_t *axis, bool fresh)
     cm1e_observer_step_after(&own->filter, (double)since_ns * 1e-9, (double)(axis->now_ns - taken) * 1e-9,
                              axis_actual(axis).counts, fresh);
     look(axis, planned_ns > 0 ? (double)planned_ns * 1e-9 : axis->cycle_s);
+}
+
+/* Whether the motor goes on while it gets no new targets, as it does in CSV. A motor that follows positions waits then,
+ * and so does a virtual axis. */
+static bool goes_by_itself(const cm1e_axis_t *axis)
+{
+    return axis->config->type == CM1E_AXIS_MOTOR && (axis->mode == CM1E_MODE_CSV || !goes_as_told(axis));
 }
 
 /* So long that all followers have stopped (scheduler.c), and an estimate would be far away. */
@@ -124,12 +136,25 @@ void cm1e_coupling_observe(cm1e_axis_t *axis)
     own->lost = fresh ? 0 : own->lost + (own->lost < UINT32_MAX);
     if (own->lost > limit) /* no slave sees it, and an estimate that went on for days would leave the range */
         return;
-    if (own->counted) {
+    if (own->counted || goes_by_itself(axis)) {
         step_by_time(axis, fresh);
         return;
     }
+    own->taken_ns = taken_ns(axis);
+    own->planned_ns = axis->now_ns;
     cm1e_observer_step(&own->filter, axis_actual(axis).counts, fresh);
     look(axis, axis->cycle_s);
+}
+
+uint32_t cm1e_coupling_settles_in(const cm1e_axis_t *axis)
+{
+    static const double time_constants = 10.0; /* of a filter of third order: by then 0.3 % are left */
+    const follow_t *now = axis->coupling->now;
+    double longest_s = 0.0;
+    for (int i = 0; i < now->count; i++)
+        if (now->links[i].source == mcActualValue && now->links[i].master)
+            longest_s = larger(longest_s, filter_s(now->links[i].master));
+    return (uint32_t)ceil(time_constants * longest_s / axis->cycle_s);
 }
 
 double cm1e_coupling_observed_velocity(const cm1e_axis_t *axis)

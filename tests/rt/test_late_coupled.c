@@ -178,12 +178,19 @@ START_TEST(test_a_slave_is_in_step_again_at_its_old_distance)
 }
 END_TEST
 
+START_TEST(test_a_slave_of_an_actual_value_rides_it_out)
+{
+    at_every_phase(mcActualValue);
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("followers, and cycles that are late or lost");
     TCase *cases = tcase_create("late");
     tcase_set_timeout(cases, 300);
     tcase_add_test(cases, test_a_slave_is_in_step_again_at_its_old_distance);
+    tcase_add_test(cases, test_a_slave_of_an_actual_value_rides_it_out);
     suite_add_tcase(suite, cases);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);

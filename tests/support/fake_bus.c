@@ -165,6 +165,7 @@ void fake_bus_cycle(cm1e_bus_t *bus, int64_t cycle_ns)
         fake_bus_cycle(bus->others[i], cycle_ns);
         memcpy(bus->inputs + (i + 1) * FAKE_IMAGE, bus->others[i]->inputs, FAKE_IMAGE);
     }
+    bus->sent_ns = bus->clock.virtual_now_ns;
     bus->clock.virtual_now_ns += cycle_ns;
     fake_serve_sdo(bus);
     if (bus->device_cycle) {
@@ -243,7 +244,7 @@ void cm1e_bus_clocks_sized(const cm1e_bus_t *bus, cm1e_bus_clocks_t *clocks, siz
     (void)bus;
     memset(clocks, 0, size);
 }
-int64_t cm1e_bus_sent_ns(const cm1e_bus_t *bus) { return bus->clock.virtual_now_ns; }
+int64_t cm1e_bus_sent_ns(const cm1e_bus_t *bus) { return bus->sent_ns; }
 const cm1e_firmware_info_t *cm1e_bus_slave_firmware(const cm1e_bus_t *bus, uint16_t position)
 {
     const cm1e_bus_t *slave = fake_slave(bus, position);

@@ -27,6 +27,7 @@ struct cm1e_bus {
     cm1e_bus_config_t config;
     cm1e_axis_config_t axes[CM1E_MAX_AXES]; /**< of the configuration */
     cm1e_clock_t clock;
+    int64_t sent_ns;             /**< when the frame left whose answer is read next */
     cm1e_firmware_t firmware;
     bool firmware_unreadable;
     cm1e_pdo_t rx, tx;
