@@ -253,7 +253,7 @@ static void wait_for_start(cm1e_scheduler_t *s)
 }
 
 /** The next cycle is the first one whose start is in the future: missed cycles are skipped, never executed in a
- *  burst. */
+ *  burst. The frame of a late cycle was sent in the time of the cycle in which it ends. */
 static void end_cycle(cm1e_scheduler_t *s)
 {
     const int64_t end_ns = cm1e_clock_now(s->clock);
@@ -266,7 +266,7 @@ static void end_cycle(cm1e_scheduler_t *s)
     if (end_ns <= planned_ns(s, s->number))
         return;
     count_overrun(s);
-    s->number = (end_ns - s->start_ns + s->cycle_time_ns - 1) / s->cycle_time_ns;
+    s->number = cycle_of(s, end_ns) + 1;
 }
 
 /** What a bus counted before, in its start and in other runs, is not of this run. */

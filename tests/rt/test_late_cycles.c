@@ -27,6 +27,7 @@ typedef struct run {
     MC_Home_t home;
     deed_t deed;                          /**< what the program does while the cycles are late */
     int late_at, late_ms, enough_ms, cycles, late_cycles;
+    int64_t pause_ns;
     bool told;                            /**< the axis is in ErrorStop with the words of this error */
     double lag, set_velocity;             /**< u, u/s */
     double ahead, left;                   /**< u, of v * t: of the set-point at first, and the largest change since */
@@ -170,7 +171,7 @@ START_TEST(test_a_stop_in_csv_ends_also_where_each_cycle_misses_more)
 }
 END_TEST
 
-/** Every tenth cycle takes 5.9 ms. u: by how much the set-point has left v * t until now. */
+/** Every tenth cycle takes too long. u: by how much the set-point has left v * t until now. */
 static void pause_now_and_then(void *context)
 {
     run_t *run = context;
@@ -180,7 +181,7 @@ static void pause_now_and_then(void *context)
     MC_Power(&run->power);
     run->turn.Execute = run->power.Status && run->cycles >= MOVED_AT;
     MC_MoveVelocity(&run->turn);
-    if (run->cycles < IN_VELOCITY_AT + 50 || run->cycles % 10 != 0)
+    if ((run->late_cycles == 0 && !run->turn.InVelocity) || run->cycles % 10 != 0)
         return;
     cm1e_axis_info_t info = {0};
     cm1e_axis_read(run->machine.axis[0], &info);
@@ -188,15 +189,24 @@ static void pause_now_and_then(void *context)
     if (run->late_cycles++ == 0)
         run->ahead = ahead;
     run->left = fmax(run->left, fabs(ahead - run->ahead));
-    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + 5900 * MS / 1000);
+    cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + run->pause_ns);
 }
 
-START_TEST(test_a_pause_of_csv_that_ends_within_a_cycle_shifts_the_set_point_by_whole_cycles)
+/** Also where it ends just when a cycle begins: in that cycle the late frame is sent, and no second one. */
+START_TEST(test_a_pause_of_csv_that_ends_anywhere_in_a_cycle_shifts_the_set_point_by_whole_cycles)
 {
-    const run_t run = run_late((run_t){.machine = {.axis_count = 1, .mapping = CM1E_MAPPING_CSV},
-                                       .program = pause_now_and_then});
-    ck_assert_int_gt(run.late_cycles, 20);
-    ck_assert_msg(run.left < 1e-6, "the set-point has left its course by %g u", run.left);
+    static const int64_t percent[] = {301, 350, 400, 499, 500, 501, 590, 700, 1200, 2999, 3000};
+    static const int64_t cycles_ns[] = {250 * MS / 1000, MS};
+    for (size_t c = 0; c < sizeof cycles_ns / sizeof cycles_ns[0]; c++)
+        for (size_t p = 0; p < sizeof percent / sizeof percent[0]; p++) {
+            const run_t run = run_late((run_t){.machine = {.axis_count = 1, .mapping = CM1E_MAPPING_CSV,
+                                                           .cycle_time_ns = cycles_ns[c]},
+                                               .pause_ns = percent[p] * cycles_ns[c] / 100,
+                                               .program = pause_now_and_then});
+            ck_assert_int_gt(run.late_cycles, 5);
+            ck_assert_msg(run.left < 1e-6, "%d %% of %d us: the set-point has left its course by %g u", (int)percent[p],
+                          (int)(cycles_ns[c] / 1000), run.left);
+        }
 }
 END_TEST
 
@@ -208,7 +218,7 @@ int main(void)
     tcase_add_test(cases, test_the_position_loop_of_csv_goes_on_in_late_cycles);
     tcase_add_test(cases, test_where_each_cycle_misses_one_or_two_a_motor_in_csv_comes_to_rest);
     tcase_add_test(cases, test_a_stop_in_csv_ends_also_where_each_cycle_misses_more);
-    tcase_add_test(cases, test_a_pause_of_csv_that_ends_within_a_cycle_shifts_the_set_point_by_whole_cycles);
+    tcase_add_test(cases, test_a_pause_of_csv_that_ends_anywhere_in_a_cycle_shifts_the_set_point_by_whole_cycles);
     tcase_add_test(cases, test_where_every_cycle_is_late_no_axis_keeps_its_torque);
     suite_add_tcase(suite, cases);
     SRunner *runner = srunner_create(suite);
