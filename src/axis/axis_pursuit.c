@@ -130,11 +130,13 @@ static void brake_meanwhile(cm1e_axis_t *axis, double time_s)
         slow_down(axis, time_s);
 }
 
-/* Whether a servo that brakes as hard as this one has braked would overshoot when it has pulled the motor back. */
+/* Whether a servo that brakes as hard as this one has braked would overshoot when it has pulled the motor back. It can
+ * brake as hard as its axis may: what a motor that hardly turned has braked says nothing. */
 static bool is_too_far(const cm1e_axis_t *axis)
 {
     const pursuit_t *pursuit = &axis->setpoint.pursuit;
-    const double braking = fmax(0.0, pursuit->speed - speed_of_motor(axis)) / pursuit->unheard_s;
+    const double braked = fmax(0.0, pursuit->speed - speed_of_motor(axis)) / pursuit->unheard_s;
+    const double braking = fmax(braked, axis->limits.system.deceleration);
     const double noise = (position_noise + CM1E_AXIS_VELOCITY_NOISE * axis->cycle_s) / fabs(axis->position.scale);
     const double ways = axis_led(axis) ? farthest_ways_on_path : farthest_ways;
     return lead_of_motor(axis) > fmax(ways * way_of_cycle(axis), braking * approach_s * approach_s / 2.0) + noise;

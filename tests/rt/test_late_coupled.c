@@ -30,11 +30,14 @@ typedef struct run {
     MC_SOURCE source;
     loss_t loss;
     int cycles, at, cycle; /**< cycles: of the loss, which begins in cycle `at` */
+    int64_t pause_ns;      /**< 0: these cycles */
+    int more, every;       /**< more pauses, with so many cycles between their beginnings */
     MC_Power_t power[AXES];
     MC_GearIn_t gear;
     MC_MoveVelocity_t turn, back;
     MC_Halt_t halt;
     double apart, fastest; /**< u; u/s of the slave */
+    int latest, turned;    /**< cycle; turned: in which the master has its velocity backwards */
 } run_t;
 
 static cm1e_axis_info_t info_of(const run_t *run, int n)
@@ -68,15 +71,22 @@ static double apart(const run_t *run)
 static void judge(const run_t *run)
 {
     char scene[160], text[CM1E_AXIS_ERROR_TEXT_BYTES];
-    snprintf(scene, sizeof scene, "master %d, slave %d, source %d, %s, %d cycles in cycle %d", run->kind[MASTER],
-             run->kind[SLAVE], run->source, loss_names[run->loss], run->cycles, run->at);
+    snprintf(scene, sizeof scene, "master %d, slave %d, source %d, %s, %d cycles or %g ms in cycle %d, %d more", run->kind[MASTER],
+             run->kind[SLAVE], run->source, loss_names[run->loss], run->cycles, (double)run->pause_ns * 1e-6, run->at, run->more);
     cm1e_axis_error_text(run->machine.axis[SLAVE], text, sizeof text);
     ck_assert_msg(!run->gear.Error && info_of(run, SLAVE).state == CM1E_AXIS_SYNCHRONIZED_MOTION, "%s: %s", scene, text);
     const double rounding = run->source == mcActualValue ? 0.06 : 1e-6; /* a motor in CSV rests where friction holds it */
     const double slip = apart(run) - run->apart;
     ck_assert_msg(run->gear.InGear && fabs(slip) < rounding, "%s: InGear %d, slip of %g u", scene, run->gear.InGear, slip);
     const double most = speed_u + 0.1 * (limit_u - speed_u); /* a tenth of what is left makes up distance; an estimate overshoots */
+    ck_assert_msg(!run->latest || run->turned <= run->latest, "%s: it turns round until cycle %d", scene, run->turned);
     ck_assert_msg(run->fastest < 1.12 * most, "%s: the slave has %g u/s", scene, run->fastest);
+}
+
+static bool is_paused(const run_t *run)
+{
+    const int since = run->cycle - run->at;
+    return run->loss == PAUSE && (since == 0 || (since > 0 && since <= run->more * run->every && since % run->every == 0));
 }
 
 static void program(void *context)
@@ -85,12 +95,14 @@ static void program(void *context)
     cm1e_sim_probe_t probe;
     call_blocks(run);
     cm1e_sim_probe(cm1e_bus_segment(run->machine.bus), run->kind[MASTER] == VIRTUAL ? 1 : 2, &probe);
+    if (run->turned == 0 && run->back.InVelocity)
+        run->turned = run->cycle;
     run->fastest = fmax(run->fastest, probe.peak_velocity_counts_per_s / unit);
     if (run->cycle == IN_GEAR)
         run->apart = apart(run);
-    if (run->cycle == run->at && run->loss == PAUSE) {
+    if (is_paused(run)) {
         cm1e_clock_t *clock = cm1e_bus_clock(run->machine.bus);
-        cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + run->cycles * cycle_ns);
+        cm1e_clock_sleep_until(clock, cm1e_clock_now(clock) + (run->pause_ns ? run->pause_ns : run->cycles * cycle_ns));
     }
     if (run->cycle++ == END) {
         judge(run);
@@ -184,6 +196,24 @@ START_TEST(test_a_slave_of_an_actual_value_rides_it_out)
 }
 END_TEST
 
+/** With one or two missed cycles each, also while the master turns round: there its motor swings round a set-point that
+ *  hardly moves, and was followed as one that a load has turned on. */
+START_TEST(test_a_host_that_is_late_again_and_again_neither_ends_a_gear_nor_holds_its_master)
+{
+    static const int percent[] = {102, 151, 250, 298}, every[] = {2, 3, 10};
+    enum { PERCENTS = 4, EVERIES = 3, PAUSES = 20, TURN = 197 };
+    int number = 0;
+    const int stride = sweep_stride(7, 61);
+    for (int pair = 0; pair < PAIRS; pair++)
+        for (int p = 0; p < PERCENTS; p++)
+            for (int e = 0; e < EVERIES; e++, number++)
+                for (int at = BACK - PAUSES * every[e] + number * 17 % stride; at < BACK + 200; at += stride)
+                    play((run_t){.kind = {pairs[pair][0], pairs[pair][1]}, .at = at, .more = PAUSES - 1,
+                                 .every = every[e], .pause_ns = percent[p] * cycle_ns / 100,
+                                 .latest = at + PAUSES * every[e] + TURN + 40});
+}
+END_TEST
+
 int main(void)
 {
     Suite *suite = suite_create("followers, and cycles that are late or lost");
@@ -191,6 +221,7 @@ int main(void)
     tcase_set_timeout(cases, 300);
     tcase_add_test(cases, test_a_slave_is_in_step_again_at_its_old_distance);
     tcase_add_test(cases, test_a_slave_of_an_actual_value_rides_it_out);
+    tcase_add_test(cases, test_a_host_that_is_late_again_and_again_neither_ends_a_gear_nor_holds_its_master);
     suite_add_tcase(suite, cases);
     SRunner *runner = srunner_create(suite);
     srunner_run_all(runner, CK_ENV);
