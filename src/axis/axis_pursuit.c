@@ -5,10 +5,10 @@
  * missing, and is beyond that target when the next one comes. If the motion began anew there, the servo would pull the
  * load back, even backwards, and the motor would exceed its maximum velocity while it catches up afterwards. So the
  * set-point first goes after the motor, never faster than before the silence or pause, and slower when it is near. The
- * motion begins anew where both meet. If the drive has turned the motor round already, the set-point meets it on its way
- * back: the motor would swing to and fro about one that is far behind it. A slave makes up its distance to its master
- * then, and slaves of the axis, which see another velocity of their master, catch up. An axis of a group comes to rest,
- * and goes back to its path, which waits.
+ * motion begins anew where both meet. If the drive has turned the motor round already, the set-point meets it on its
+ * way back: the motor would swing to and fro about one that is far behind it. A slave makes up its distance to its
+ * master then, and slaves of the axis, which see another velocity of their master, catch up. An axis of a group comes
+ * to rest, and goes back to its path, which waits.
  *
  * A slave, a motion made of several, and a path go on after one or two cycles instead.
  *
