@@ -3,8 +3,11 @@
 #include <net/if.h>
 #include <sched.h>
 #include <signal.h>
+#include <stddef.h>
 #include <stdio.h>
 #include <string.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <time.h>
 #include <unistd.h>
@@ -108,6 +111,28 @@ static void test_the_own_process_is_refused_too(void)
     cm1e_interface_lock_release(&lock);
     cm1e_interface_lock_release(&lock);
     expect_free("wire0");
+}
+
+/** Names that any program can take: one that is no whole record tells of no owner. */
+static void test_a_record_that_is_not_whole_is_none(void)
+{
+    static const struct {
+        const char *record;
+        int pid; /* 0: it is no record */
+    } rows[] = {{"12:34:prog", 12}, {"12:34:", 12}, {"12:34", 0}, {"12", 0}, {"12:", 0}, {"x:34:prog", 0}, {"", 0}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        struct sockaddr_un address = {.sun_family = AF_UNIX};
+        cm1e_interface_owner_t told;
+        const int length = snprintf(address.sun_path + 1, sizeof address.sun_path - 1, "cm1e-owner.%u:%s",
+                                    if_nametoindex("wire0"), rows[i].record);
+        const int s = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        TEST_ASSERT_EQUAL_INT(0, bind(s, (const struct sockaddr *)&address,
+                                      (socklen_t)(offsetof(struct sockaddr_un, sun_path) + 1 + (size_t)length)));
+        TEST_ASSERT_EQUAL_MESSAGE(rows[i].pid != 0, cm1e_interface_owner("wire0", &told), rows[i].record);
+        TEST_ASSERT_EQUAL_INT(rows[i].pid, told.pid);
+        TEST_ASSERT_EQUAL_STRING(i == 0 ? "prog" : "", told.program);
+        close(s);
+    }
 }
 
 static void test_a_renamed_interface_is_the_same_one(void)
@@ -220,6 +245,7 @@ int main(void)
     UNITY_BEGIN();
     RUN_TEST(test_the_second_is_told_who_has_the_interface_and_since_when);
     RUN_TEST(test_the_own_process_is_refused_too);
+    RUN_TEST(test_a_record_that_is_not_whole_is_none);
     RUN_TEST(test_a_renamed_interface_is_the_same_one);
     RUN_TEST(test_the_same_name_in_another_namespace_is_another_interface);
     RUN_TEST(test_a_user_sees_a_lock_of_root);

@@ -274,6 +274,24 @@ static void test_truncated_answers_are_dropped_and_padded_ones_taken(void)
     TEST_ASSERT_EQUAL_INT(1, ecx_waitinframe(&port, idx, 0));
 }
 
+/** A datagram without data makes the shortest frame that there is. */
+static void test_the_shortest_frame_is_known_as_ours(void)
+{
+    const uint8 idx = ecx_getindex(&port);
+    uint8_t frame[CM1E_FRAME_MAX] = {0};
+    wire.mute = true;
+    ecx_setupdatagram(&port, &port.txbuf[idx], EC_CMD_NOP, idx, 0, 0, 0, NULL);
+    TEST_ASSERT_GREATER_THAN_INT(0, ecx_outframe_red(&port, idx));
+    const size_t length = good_answer(idx, frame);
+    TEST_ASSERT_EQUAL_size_t(28, length);
+    cm1e_nic_inject(nic, 0, frame, length, 0);
+    TEST_ASSERT_GREATER_THAN_INT(EC_NOFRAME, ecx_waitinframe(&port, idx, 0));
+    cm1e_nic_inject(nic, 0, frame, length, 0);
+    TEST_ASSERT_EQUAL_INT(EC_NOFRAME, ecx_waitinframe(&port, send_unanswered(), 0));
+    TEST_ASSERT_EQUAL_UINT64(1, port.counters.duplicates + port.counters.late);
+    TEST_ASSERT_EQUAL_UINT64(0, port.counters.malformed);
+}
+
 static void test_a_foreign_source_address_is_taken_without_a_ring(void)
 {
     const uint8 idx = send_unanswered();
@@ -466,6 +484,7 @@ int main(void)
     RUN_TEST(test_doubled_answers_are_counted_and_do_no_harm);
     RUN_TEST(test_every_single_damaged_header_byte_is_noticed);
     RUN_TEST(test_truncated_answers_are_dropped_and_padded_ones_taken);
+    RUN_TEST(test_the_shortest_frame_is_known_as_ours);
     RUN_TEST(test_a_foreign_source_address_is_taken_without_a_ring);
     RUN_TEST(test_frames_of_another_master_are_counted_apart);
     RUN_TEST(test_an_answer_of_another_soem_is_never_taken_for_ours);

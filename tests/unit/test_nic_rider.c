@@ -97,6 +97,20 @@ static void test_soem_gets_what_it_gets_without_a_rider(void)
     TEST_ASSERT_EQUAL_UINT64(0, port.counters.malformed);
 }
 
+static void test_a_rider_waits_for_a_frame_that_can_be_sent(void)
+{
+    const uint8 idx = ecx_getindex(&port);
+    ecx_setupdatagram(&port, &port.txbuf[idx], EC_CMD_LRW, idx, 0, 0, 2 * N, image);
+    offer(1);
+    port.nic = NULL;
+    TEST_ASSERT_EQUAL_INT(-1, ecx_outframe_red(&port, idx));
+    TEST_ASSERT_EQUAL_UINT8(RIDER_WAITS, port.riders[0].state);
+    port.nic = nic;
+    ecx_setbufstat(&port, idx, EC_BUF_EMPTY);
+    expect_image((uint8)(ecx_waitinframe(&port, send_image(2 * N, false), 250) ? port.riders[0].index : EC_MAXBUF));
+    expect_answer(1);
+}
+
 static void test_a_slave_that_does_not_answer_counts_nothing(void)
 {
     offer(N + 7);
@@ -226,6 +240,7 @@ int main(void)
 {
     UNITY_BEGIN();
     RUN_TEST(test_soem_gets_what_it_gets_without_a_rider);
+    RUN_TEST(test_a_rider_waits_for_a_frame_that_can_be_sent);
     RUN_TEST(test_a_slave_that_does_not_answer_counts_nothing);
     RUN_TEST(test_it_takes_the_first_frame_of_process_data_with_room);
     RUN_TEST(test_two_ride_in_one_frame);

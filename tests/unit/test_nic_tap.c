@@ -236,6 +236,16 @@ static void test_injection_refuses_what_does_not_fit(void)
     TEST_ASSERT_TRUE(cm1e_nic_inject(nic, 0, frame, 60, 0));
 }
 
+static void test_frames_of_every_length_are_sent_and_no_others(void)
+{
+    const uint8_t frame[CM1E_FRAME_MAX + 1] = {0};
+    cm1e_nic_set_tap(nic, NULL, NULL);
+    for (size_t length = 0; length <= CM1E_FRAME_MAX + 1; length++)
+        TEST_ASSERT_EQUAL(length > 0 && length <= CM1E_FRAME_MAX, cm1e_nic_send(nic, 0, frame, length));
+    TEST_ASSERT_EQUAL_INT(CM1E_FRAME_MAX, wire.sent[0]);
+    TEST_ASSERT_FALSE(cm1e_nic_send(nic, 1, frame, 60)); /* a line has one port */
+}
+
 /* ---- frame queue ------------------------------------------------------------------------------------------------- */
 
 static void test_the_frame_queue_sorts_by_time_and_keeps_the_order_of_equals(void)
@@ -316,7 +326,11 @@ static void test_a_pcap_file_has_one_writer(void)
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_open(&first, path, NULL));
     cm1e_pcap_write(first, 1, frame, sizeof frame);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_pcap_check(first, path, NULL));
+    const int next = dup(0);
+    close(next);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_IO, cm1e_pcap_open(&second, path, &diag));
+    TEST_ASSERT_EQUAL_INT(next, dup(0)); /* what was refused has nothing open */
+    close(next);
     TEST_ASSERT_NOT_NULL_MESSAGE(strstr(diag.text, "is being written already, for another network"), diag.text);
     TEST_ASSERT_NULL(second);
     TEST_ASSERT_EQUAL_INT(0, stat(path, &found));
@@ -385,6 +399,7 @@ int main(void)
     RUN_TEST(test_a_changed_working_counter_is_what_the_master_sees);
     RUN_TEST(test_the_working_counter_of_any_datagram_is_found_and_of_no_broken_frame);
     RUN_TEST(test_injected_frames_come_at_their_time_and_pass_the_tap);
+    RUN_TEST(test_frames_of_every_length_are_sent_and_no_others);
     RUN_TEST(test_injection_refuses_what_does_not_fit);
     RUN_TEST(test_the_frame_queue_sorts_by_time_and_keeps_the_order_of_equals);
     RUN_TEST(test_the_pcap_file_holds_every_frame_after_the_tap);

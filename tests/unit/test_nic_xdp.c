@@ -2,8 +2,10 @@
  * interface that goes down and comes up again, frames of other protocols, and what is left behind. test_nic_raw has what
  * all ways to the frames of an interface promise. */
 #include <arpa/inet.h>
+#include <linux/ethtool.h>
 #include <linux/if_packet.h>
 #include <linux/if_xdp.h>
+#include <linux/sockios.h>
 #include <net/if.h>
 #include <poll.h>
 #include <signal.h>
@@ -298,6 +300,60 @@ static void test_a_socket_of_another_program_is_told(void)
     open_near();
 }
 
+/* ---- queues ------------------------------------------------------------------------------------------------------ */
+
+int __real_ioctl(int fd, unsigned long what, void *data);
+int __wrap_ioctl(int fd, unsigned long what, void *data);
+
+/** What the driver of a card says of its queues; below 0: it does not answer. */
+typedef struct card {
+    int combined, incoming, rings;
+} card_t;
+static const card_t *card; /* NULL: that of the pair */
+
+int __wrap_ioctl(int fd, unsigned long what, void *data)
+{
+    struct ifreq *request = data;
+    if (what != SIOCETHTOOL || !card)
+        return __real_ioctl(fd, what, data);
+    struct ethtool_channels *channels = (void *)request->ifr_data;
+    struct ethtool_rxnfc *rings = (void *)request->ifr_data;
+    const bool answers = channels->cmd == ETHTOOL_GCHANNELS ? card->combined >= 0 : card->rings >= 0;
+    if (channels->cmd != ETHTOOL_GCHANNELS && channels->cmd != ETHTOOL_GRXRINGS)
+        return __real_ioctl(fd, what, data);
+    if (answers && channels->cmd == ETHTOOL_GCHANNELS) {
+        channels->combined_count = (uint32_t)card->combined;
+        channels->rx_count = (uint32_t)card->incoming;
+    } else if (answers)
+        rings->data = (uint64_t)card->rings;
+    return answers ? 0 : -1;
+}
+
+/** A socket sees the frames of one queue: a card with more is refused, with their number and what to do. */
+static void test_a_card_with_several_queues_is_refused(void)
+{
+    static const struct {
+        card_t card;
+        const char *says; /* NULL: it is taken */
+    } rows[] = {
+        {{1, 0, -1}, NULL}, {{0, 1, -1}, NULL}, {{0, 0, -1}, NULL}, {{0, 0, 1}, NULL}, {{-1, 0, 1}, NULL}, {{-1, 0, 0}, NULL},
+        {{-1, 0, -1}, NULL},
+        {{2, 0, -1}, "has 2 receive queues, and AF_XDP sees the frames of one. Leave one: sudo ethtool -L wire0 combined 1."},
+        {{0, 4, -1}, "has 4 receive queues, and AF_XDP sees the frames of one. Leave one: sudo ethtool -L wire0 rx 1."},
+        {{1, 2, 1}, "has 3 receive queues"}, {{0, 0, 5}, "has 5 receive queues"}, {{-1, 0, 2}, "has 2 receive queues"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        cm1e_xdp_socket_close(near_end);
+        near_end = NULL;
+        card = &rows[i].card;
+        const cm1e_error_t error = cm1e_xdp_socket_open(&near_end, "wire0", &diag);
+        card = NULL;
+        TEST_ASSERT_EQUAL_INT_MESSAGE(rows[i].says ? CM1E_ERROR_UNSUPPORTED : CM1E_OK, error, diag.text);
+        TEST_ASSERT_TRUE_MESSAGE(!rows[i].says || strstr(diag.text, rows[i].says), diag.text);
+    }
+    open_near();
+}
+
 int main(void)
 {
     if (veth_make()) {
@@ -319,5 +375,6 @@ int main(void)
     RUN_TEST(test_it_opens_and_closes_again_and_again);
     RUN_TEST(test_an_interface_has_one_owner_whichever_way);
     RUN_TEST(test_a_socket_of_another_program_is_told);
+    RUN_TEST(test_a_card_with_several_queues_is_refused);
     return UNITY_END();
 }
