@@ -456,6 +456,8 @@ static void test_what_it_shows(void)
     TEST_ASSERT_EQUAL_DOUBLE(0.0, position[5]);
     TEST_ASSERT_DOUBLE_WITHIN(1e-9, 5.0 - hypot(group_at(0), group_at(1)), group_info().path_left);
     TEST_ASSERT_EQUAL_INT(1, group_info().commands);
+    for (int i = 0; i < CM1E_GROUP_AXES; i++)
+        TEST_ASSERT_EQUAL_UINT32(i < 3 ? axes_reference(i).Handle : 0, group_info().axis[i].Handle);
     TEST_ASSERT_EQUAL_INT(CM1E_OK, cm1e_group_values(group, mcActualValue, position, velocity, &path));
     TEST_ASSERT_DOUBLE_WITHIN(0.01, group_at(1), position[1]);
     TEST_ASSERT_EQUAL_INT(CM1E_ERROR_UNSUPPORTED,
