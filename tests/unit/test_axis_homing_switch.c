@@ -133,8 +133,8 @@ static void test_no_position_is_set_without_one(void)
     TEST_ASSERT_FALSE(bench_info().homed); /* nothing was found out */
 }
 
-/* Without a switch each limit switch is met once, then the search gives up. */
-static void test_switch_that_is_not_there_ends_at_the_second_limit_switch(void)
+/* Without a switch the search turns once at each limit switch, and gives up where it meets the first one again. */
+static void test_switch_that_is_not_there_ends_at_the_first_limit_switch_again(void)
 {
     switch_there = false;
     for (int direction = mcPositiveDirection; direction <= mcSwitchNegative; direction += 2) {
@@ -147,6 +147,8 @@ static void test_switch_that_is_not_there_ends_at_the_second_limit_switch(void)
         bench_told(cm1e_strerror(CM1E_ERROR_AXIS_STEP_LIMIT_SWITCH));
         TEST_ASSERT_EQUAL_INT(CM1E_AXIS_HOMING, bench_info().state);
         TEST_ASSERT_FALSE(bench_info().homed);
+        const bool positive = direction == mcPositiveDirection || direction == mcSwitchPositive;
+        TEST_ASSERT_GREATER_OR_EQUAL_INT32(LIMIT_SWITCH, positive ? bus.position : -bus.position);
         expect_smooth(1.0);
         expect_standing();
     }
@@ -197,7 +199,7 @@ int main(void)
     RUN_TEST(test_accuracy_of_the_place_at_every_phase);
     RUN_TEST(test_another_input_than_the_configured_one);
     RUN_TEST(test_no_position_is_set_without_one);
-    RUN_TEST(test_switch_that_is_not_there_ends_at_the_second_limit_switch);
+    RUN_TEST(test_switch_that_is_not_there_ends_at_the_first_limit_switch_again);
     RUN_TEST(test_limit_switch_in_every_mode_direction_and_place);
     RUN_TEST(test_limit_switch_step_between_two_active_switches_gives_up);
     return UNITY_END();
