@@ -148,6 +148,13 @@ static void frames_over_each_other(void)
     cyclic_command(1, 0)->input_offset = cyclic_command(0, 0)->input_offset;
     device(70)->receive.start = device(0)->receive.start;
 }
+/* Only by the last byte. */
+static void frames_share_a_byte(void)
+{
+    const int64_t before = cyclic_command(1, 0)->input_offset;
+    cyclic_command(1, 0)->input_offset = cyclic_command(0, 0)->input_offset + cyclic_command(0, 0)->length - 1;
+    device(70)->receive.start -= 8 * (uint32_t)(before - cyclic_command(1, 0)->input_offset);
+}
 static void variable_twice(void) { document.outputs.variables.at[3].name = document.outputs.variables.at[1].name; }
 static void counts_wrong(void) { cyclic_command(0, 0)->count = 2; }
 static void states_of_too_few(void) { cyclic_command(0, 1)->count--; }
@@ -199,6 +206,7 @@ static const struct breakage {
     {"eni-image-range", ENI_ONE, 0, variable_behind_the_image, 1},
     {"eni-image-range", ENI_ONE, 0, image_too_short, 2}, /* the slave's range, its last variable */
     {"eni-image-overlap", ENI_ONE, 71, frames_over_each_other, 2}, /* of slaves, and of commands */
+    {"eni-image-overlap", ENI_ONE, 71, frames_share_a_byte, 2},
     {"eni-variable-twice", ENI_ONE, 0, variable_twice, 1},
     {"eni-working-counter", ENI_MIXED, 0, counts_wrong, 1},
     {"eni-working-counter", ENI_MIXED, 0, states_of_too_few, 1},

@@ -85,6 +85,44 @@ static void test_numbers_that_are_not_there_are_0(void)
     TEST_ASSERT_EQUAL(0, document.inputs.variables.at[0].bits + document.inputs.variables.at[0].offset);
 }
 
+static void test_the_master_has_an_address_and_states_of_mailboxes(void)
+{
+    reads("<?xml version=\"1.0\"?>\n<EtherCATConfig><Config><Master><Info><Name>M</Name><Destination>ffffffffffff</Destination>"
+          "<Source>010101010203</Source><EtherType>a488</EtherType></Info><MailboxStates><StartAddr>150994944</StartAddr>"
+          "<Count>7</Count></MailboxStates></Master></Config></EtherCATConfig>");
+    TEST_ASSERT_EQUAL_STRING("M", document.master_name);
+    TEST_ASSERT_TRUE(document.has_mailbox_states);
+    TEST_ASSERT_EQUAL_HEX32(0x09000000, document.mailbox_states_start);
+    TEST_ASSERT_EQUAL_UINT32(7, document.mailbox_states_count);
+    TEST_ASSERT_EQUAL_size_t(6, document.source.size);
+    TEST_ASSERT_EQUAL_MEMORY("\1\1\1\1\2\3", document.source.data, 6);
+    TEST_ASSERT_EQUAL_MEMORY("\xFF\xFF\xFF\xFF\xFF\xFF", document.destination.data, 6);
+    TEST_ASSERT_EQUAL_size_t(2, document.ether_type.size);
+    reads(SLAVE(""));
+    TEST_ASSERT_FALSE(document.has_mailbox_states);
+}
+
+/** Where no command writes the sync managers of a mailbox, they are what the mailbox says. */
+static void test_a_mailbox_has_its_sync_managers_without_commands(void)
+{
+    cm1e_arena_t arena = {0};
+    reads(SLAVE("<Mailbox><Send><Start>4096</Start><Length>128</Length></Send><Recv><Start>4224</Start><Length>130</Length>"
+                "</Recv></Mailbox>"));
+    const cm1e_description_t described = cm1e_eni_describe(&arena, &document.devices.at[0]);
+    TEST_ASSERT_EQUAL(2, described.sync_managers.count);
+    static const uint16_t starts[] = {4096, 4224}, lengths[] = {128, 130};
+    for (int n = 0; n < 2; n++) {
+        const cm1e_described_sync_manager_t *manager = &described.sync_managers.at[n];
+        TEST_ASSERT_EQUAL(n ? CM1E_SM_MAILBOX_IN : CM1E_SM_MAILBOX_OUT, manager->use);
+        TEST_ASSERT_EQUAL(starts[n], manager->start);
+        TEST_ASSERT_EQUAL(lengths[n], manager->length);
+        TEST_ASSERT_EQUAL_HEX8(n ? 0x22 : 0x26, manager->control);
+        TEST_ASSERT_TRUE(manager->length_given && manager->enable);
+        TEST_ASSERT_EQUAL(2, manager->place);
+    }
+    cm1e_arena_free(&arena);
+}
+
 static void test_flags_may_be_words(void)
 {
     reads(COMMAND("<BeforeSlave>true</BeforeSlave><Cmd>8</Cmd><Ado>16</Ado><DataLength>2</DataLength>"));
@@ -251,6 +289,8 @@ int main(void)
     RUN_TEST(test_numbers_are_taken_as_files_write_them);
     RUN_TEST(test_what_is_not_known_is_passed_over);
     RUN_TEST(test_numbers_that_are_not_there_are_0);
+    RUN_TEST(test_the_master_has_an_address_and_states_of_mailboxes);
+    RUN_TEST(test_a_mailbox_has_its_sync_managers_without_commands);
     RUN_TEST(test_flags_may_be_words);
     RUN_TEST(test_a_command_without_data_has_zeros_of_its_length);
     RUN_TEST(test_every_transition_and_state_is_known);

@@ -3,6 +3,7 @@
 
 #include "device/device.h"
 #include "esi_read_bench.h"
+#include "generate/esi_read.h"
 
 static const cm1e_description_t *device(size_t n)
 {
@@ -402,6 +403,83 @@ static void test_fmmus_and_sync_managers(void)
     TEST_ASSERT_FALSE(device(0)->sync_managers.at[3].length_given);
 }
 
+/** A number that is 0 is given all the same, and one that is left out is not. */
+static void test_numbers_of_the_identity_that_are_0_or_left_out(void)
+{
+    static const char whole[] = "<Type ProductCode=\"#x1\" RevisionNo=\"#x20\">D1</Type>";
+    for (int product = 0; product < 2; product++)
+        for (int revision = 0; revision < 2; revision++) {
+            char type[80];
+            snprintf(type, sizeof type, "<Type%s%s>D1</Type>", product ? " ProductCode=\"0\"" : "",
+                     revision ? " RevisionNo=\"#x0\"" : "");
+            good(with(whole, type));
+            TEST_ASSERT_EQUAL(product, device(0)->product_given);
+            TEST_ASSERT_EQUAL(revision, device(0)->revision_given);
+            TEST_ASSERT_EQUAL_HEX32(0, device(0)->product_code | device(0)->revision);
+        }
+}
+
+/** Of equal names the one with the smallest number is found, in whatever order they came. */
+static void test_names_are_found_in_whatever_order_they_came(void)
+{
+    static const char *const given[] = {"b", "a", "c", "a", "ab", "b", "B"};
+    enum { NAMES = sizeof given / sizeof given[0] };
+    static const size_t expected[NAMES] = {0, 1, 2, 1, 4, 0, 6};
+    for (size_t first = 0; first < NAMES; first++) {
+        cm1e_arena_t arena = {0};
+        cm1e_xml_reader_t reader = {.arena = &arena};
+        cm1e_esi_names_t names = {0};
+        for (size_t i = 0; i < NAMES; i++)
+            cm1e_esi_names_add(&reader, &names, given[(first + i) % NAMES], (first + i) % NAMES);
+        cm1e_esi_names_sort(&names);
+        for (size_t i = 0; i < NAMES; i++) {
+            const size_t found = cm1e_esi_names_find(&names, given[i]);
+            TEST_ASSERT_LESS_THAN_size_t(NAMES, found);
+            TEST_ASSERT_EQUAL_STRING(given[i], names.at[found].name);
+            TEST_ASSERT_EQUAL_size_t(expected[i], names.at[found].number);
+        }
+        TEST_ASSERT_EQUAL_size_t(NAMES, cm1e_esi_names_find(&names, "d"));
+        TEST_ASSERT_EQUAL_size_t(NAMES, cm1e_esi_names_find(&names, ""));
+        cm1e_arena_free(&arena);
+    }
+}
+
+/** Other writers have brackets too: only "[unit] comment" is a unit, as our writer puts it. */
+static void test_which_comments_begin_with_a_unit(void)
+{
+    static const struct {
+        const char *text, *unit, *comment; /* comment NULL: none */
+    } rows[] = {
+        {"[V] volts", "V", "volts"}, {"[V] v", "V", "v"}, {"[V] a b", "V", "a b"}, {"[V]", "V", NULL}, {"[V] [x] y", "V", "[x] y"},
+        {"[V]  volts", "", "[V]  volts"}, {"[V]volts", "", "[V]volts"}, {"[] volts", "", "[] volts"}, {"[V volts", "", "[V volts"},
+        {"volts [V]", "", "volts [V]"}, {"x[V] y", "", "x[V] y"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        char element[60];
+        snprintf(element, sizeof element, "<Comment>%s</Comment>", rows[i].text);
+        good(with("<Comment>[V] volts</Comment>", element));
+        TEST_ASSERT_EQUAL_STRING_MESSAGE(rows[i].unit, entry(0x2000, 1)->unit, rows[i].text);
+        if (rows[i].comment)
+            TEST_ASSERT_EQUAL_STRING_MESSAGE(rows[i].comment, entry(0x2000, 1)->comment, rows[i].text);
+        else
+            TEST_ASSERT_NULL_MESSAGE(entry(0x2000, 1)->comment, rows[i].text);
+    }
+}
+
+/** A finding about an entry names a line: that of its object, or of its item in a data type. */
+static void test_every_entry_of_a_dictionary_has_a_place(void)
+{
+    unsigned entries = 0;
+    good(every);
+    const cm1e_object_list_t *objects = &device(0)->objects;
+    for (size_t i = 0; i < objects->count; i++)
+        for (size_t k = 0; k < objects->at[i].entries.count; k++, entries++)
+            TEST_ASSERT_TRUE(objects->at[i].code == CM1E_OBJECT_VAR
+                                 ? objects->at[i].entries.at[k].place == objects->at[i].place
+                                 : objects->at[i].entries.at[k].place > 0);
+    TEST_ASSERT_GREATER_THAN_UINT(3, entries);
+}
+
 static void test_mailbox(void)
 {
     good(every);
@@ -576,6 +654,10 @@ int main(void)
     RUN_TEST(test_items_of_info_find_their_entries);
     RUN_TEST(test_process_data);
     RUN_TEST(test_fmmus_and_sync_managers);
+    RUN_TEST(test_numbers_of_the_identity_that_are_0_or_left_out);
+    RUN_TEST(test_names_are_found_in_whatever_order_they_came);
+    RUN_TEST(test_which_comments_begin_with_a_unit);
+    RUN_TEST(test_every_entry_of_a_dictionary_has_a_place);
     RUN_TEST(test_mailbox);
     RUN_TEST(test_clocks);
     RUN_TEST(test_slots_and_modules);
