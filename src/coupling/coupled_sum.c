@@ -110,14 +110,18 @@ CM1E_RARE static from_t with_next_attempts(cm1e_axis_t *axis, const from_t *f, c
 }
 
 /* The catch-up was planned with the limits that the coupling function left at that time. If the function needs more,
- * the catch-up is planned anew in every cycle until it ends. */
+ * the catch-up is planned anew in every cycle until it ends. Beside an estimate that is disturbed, no plan holds. */
 static from_t with_catch_up(cm1e_axis_t *axis, const from_t *f, verdict_t *verdict)
 {
     coupling_t *c = axis->coupling;
+    if (c->settling > 0) {
+        c->catch_up.on = true;
+        return attempt_to(axis, f, WITHOUT_JERK, verdict);
+    }
     if (!c->catch_up.on) {
         const from_t sum = cm1e_coupled_sum(axis, f);
         *verdict = judge_sum(axis, &sum);
-        if ((!coupling_approaches(axis) && c->settling == 0) || is_settled(verdict))
+        if (!coupling_approaches(axis) || is_settled(verdict))
             return sum;
         c->catch_up.on = c->catch_up.held_back = true;
     }

@@ -186,16 +186,23 @@ static double nearest_acceleration(const cm1e_axis_t *axis, double asked)
     return smaller(a + step, larger(a - step, next));
 }
 
+/* u/s2; towards a velocity, and no more than the jerk of the axis can end there. */
+static double acceleration_to(const cm1e_axis_t *axis, double velocity)
+{
+    const double left = velocity - axis->setpoint.velocity, speed = fabs(left);
+    return copysign(smaller(speed / axis->cycle_s, sqrt(2.0 * axis->limits.maximum.jerk * speed)), left);
+}
+
 /* The catch-up is what is left between the function and a set-point of which the acceleration changes evenly, to that
- * of the function and the present catch-up as far as the limits of the axis allow. The acceleration of an actual value
- * has no limits: who goes by it may be led away from its velocity, so that is what the axis goes to. */
+ * of the function and the present catch-up as far as the limits of the axis allow. The acceleration of an estimate that
+ * is disturbed leads to nothing: only its velocity counts. */
 static void go_on_without_jerk(cm1e_axis_t *axis, const from_t *f)
 {
     const cm1e_motion_state_t on_top = axis->superimposed.id ? axis->superimposed.now : (cm1e_motion_state_t){0};
     cm1e_motion_state_t *now = &axis->coupling->catch_up.now;
     const double t = axis->cycle_s, v = axis->setpoint.velocity, a = axis->setpoint.acceleration;
-    const double asked = axis->coupling->now->by_actual ? (f->velocity + on_top.velocity - v) / t
-                                                        : f->acceleration + now->acceleration + on_top.acceleration;
+    const double asked = axis->coupling->settling > 0 ? acceleration_to(axis, f->velocity + on_top.velocity)
+                                                      : f->acceleration + now->acceleration + on_top.acceleration;
     const double next = nearest_acceleration(axis, asked);
     const double so_far = cm1e_position_minus(axis->setpoint.position, f->position) / axis->position.scale;
     *now = (cm1e_motion_state_t){so_far + t * (v + t * (2.0 * a + next) / 6.0) - on_top.position,

@@ -207,7 +207,7 @@ typedef struct coupling {
     int32_t numerator;             /**< numerator and denominator of a ratio that was refused */
     uint32_t denominator;
     uint32_t settling;             /**< cycles left in which lost frames or a pause disturb the estimate of an actual
-                                        value, so that the slave gives way to its limits */
+                                        value, so that the slave follows only its velocity */
 } coupling_t;
 
 /** Whether memory was set aside for a command that makes the axis follow (cm1e_axis_config_t.follows). */

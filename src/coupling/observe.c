@@ -146,13 +146,19 @@ void cm1e_coupling_observe(cm1e_axis_t *axis)
     look(axis, axis->cycle_s);
 }
 
+/* An encoder of a slave turns evenly, whatever happens to frames and cycles. */
+static bool is_disturbed(const link_t *link)
+{
+    return link->source == mcActualValue && link->master && !link->master->followed->own.counted;
+}
+
 uint32_t cm1e_coupling_settles_in(const cm1e_axis_t *axis)
 {
     static const double time_constants = 10.0; /* of a filter of third order: by then 0.3 % are left */
     const follow_t *now = axis->coupling->now;
     double longest_s = 0.0;
     for (int i = 0; i < now->count; i++)
-        if (now->links[i].source == mcActualValue && now->links[i].master)
+        if (is_disturbed(&now->links[i]))
             longest_s = larger(longest_s, filter_s(now->links[i].master));
     return (uint32_t)ceil(time_constants * longest_s / axis->cycle_s);
 }
