@@ -40,9 +40,9 @@ bool is_braked_first(const machine_axis_t *axis, double velocity)
     /* What the drive has shown is a cycle older, and it may brake already, or turn the motor round. Where no frame came, the
      * simulator has not moved the shaft: the cycle before that counts. */
     const double shown = before[now == before[0]];
-    /* A bridge shows no velocity: behind a silence that is the mean one since the last answer. */
-    const bool silent = axis->channel > 0 && (axis->seen.quiet < 3 || axis->seen.rung < 3);
-    const double mean = silent ? before[2] : shown;
+    /* A bridge shows no velocity: it is the mean one since the last answer, of a cycle, or of a silence. */
+    const bool silent = axis->seen.quiet < 3 || axis->seen.rung < 3;
+    const double mean = axis->channel == 0 ? shown : silent ? before[2] : (before[0] + before[1]) / 2;
     const double least = fmin(now, fmin(shown, mean)), most = fmax(now, fmax(shown, mean));
     const bool disabled = axis->info.state == CM1E_AXIS_DISABLED || axis->seen.fails_off;
     return is_motor(axis) && disabled && axis->seen.set_velocity == 0 &&
