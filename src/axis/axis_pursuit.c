@@ -149,13 +149,15 @@ static bool is_too_slow(const cm1e_axis_t *axis)
 }
 
 /* Whether the set-point goes to a motor that the drive has turned round already. That takes longer than the few cycles
- * after which a motor behind a bridge may seem to rest. A slave, an axis of a path and the ramp of an error do not, nor
- * does a homing, which may press. */
+ * after which a motor behind a bridge may seem to rest. An axis of a path and the ramp of an error do not, nor does a
+ * homing, which may press. */
 static bool meets_on_way_back(const cm1e_axis_t *axis)
 {
     const bool stops = axis->state == CM1E_AXIS_STOPPING && axis_on_profile(axis) && !axis->homing_step.after_stop;
-    const bool moves = axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION || stops;
-    return moves && axis->setpoint.pursuit.unheard_s > (CM1E_AXIS_RIDDEN_OUT_CYCLES + 1) * axis->cycle_s;
+    const bool moves = axis->state == CM1E_AXIS_DISCRETE_MOTION || axis->state == CM1E_AXIS_CONTINUOUS_MOTION;
+    const bool follows = axis->state == CM1E_AXIS_SYNCHRONIZED_MOTION && axis_follows(axis);
+    const double longer_s = (CM1E_AXIS_RIDDEN_OUT_CYCLES + 1) * axis->cycle_s;
+    return (stops || moves || follows) && axis->setpoint.pursuit.unheard_s > longer_s;
 }
 
 static bool begin(cm1e_axis_t *axis)
