@@ -4,6 +4,7 @@
 
 #include "bus_support.h"
 #include "cm1e/generate.h"
+#include "cm1e/sdo_info.h"
 #include "cm1e/sii.h"
 #include "description/check.h"
 #include "device/bridge_facts.h"
@@ -507,6 +508,13 @@ START_TEST(the_live_device_is_described_by_what_it_tells)
     const cm1e_described_entry_t *entry = cm1e_description_entry(device, 0x1C12, 1);
     ck_assert_uint_eq(entry->access, CM1E_ACCESS_READ | CM1E_ACCESS_WRITE | CM1E_ACCESS_WRITE_PREOP_ONLY);
     ck_assert_str_eq(cm1e_description_entry(device, 0x6060, 0)->type, "SINT");
+    cm1e_entry_info_t info; /* a range, and a default value */
+    ck_assert_int_eq(cm1e_sdo_info_entry(bus, 1, 0x6060, 0, &info, &diag), CM1E_OK);
+    entry = cm1e_description_entry(device, 0x6060, 0);
+    ck_assert(info.minimum.size == 1 && info.maximum.size == 1 && info.minimum.bytes[0] != info.maximum.bytes[0]);
+    ck_assert(entry->minimum.size == 1 && entry->minimum.data[0] == info.minimum.bytes[0]);
+    ck_assert(entry->maximum.size == 1 && entry->maximum.data[0] == info.maximum.bytes[0]);
+    ck_assert_uint_eq(entry->default_data.size, info.default_value.size);
     cm1e_description_file_free(&file);
     cm1e_bus_close(bus);
 }
