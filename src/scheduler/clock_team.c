@@ -3,7 +3,7 @@
 static void find_leader(clock_team_t *team)
 {
     team->leader = 0;
-    for (uint32_t i = 0; i < team->count; i++)
+    for (uint32_t i = 1; i < team->count; i++)
         if (cm1e_bus_leads_clocks(team->buses[i], team->buses[team->leader]))
             team->leader = i;
 }

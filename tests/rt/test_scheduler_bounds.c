@@ -2,12 +2,12 @@
  * The bounds of a scheduler: how many buses and axes it may have, no memory, and the numbers of a task. What is refused
  * changes nothing.
  */
-#include <malloc.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cm1e/sim.h"
 #include "cm1e/trace.h"
+#include "scheduler/scheduler_window.h"
 #include "scheduler/trace_recorder.h"
 #include "two_buses.h"
 
@@ -109,11 +109,36 @@ END_TEST
 
 void *__real_calloc(size_t count, size_t size);
 void *__wrap_calloc(size_t count, size_t size);
+void *__real_malloc(size_t size);
+void *__wrap_malloc(size_t size);
+void *__real_aligned_alloc(size_t alignment, size_t size);
+void *__wrap_aligned_alloc(size_t alignment, size_t size);
+void __real_free(void *memory);
+void __wrap_free(void *memory);
 static int countdown; /* the allocation that fails; 0: none */
+static int held;      /* allocations that were not given back */
 
-void *__wrap_calloc(size_t count, size_t size)
+static bool fails(void) { return countdown > 0 && --countdown == 0; }
+
+static void *hold(void *memory)
 {
-    return countdown > 0 && --countdown == 0 ? NULL : __real_calloc(count, size);
+    held += memory != NULL;
+    return memory;
+}
+
+void *__wrap_calloc(size_t count, size_t size) { return fails() ? NULL : hold(__real_calloc(count, size)); }
+
+void *__wrap_malloc(size_t size) { return fails() ? NULL : hold(__real_malloc(size)); }
+
+void *__wrap_aligned_alloc(size_t alignment, size_t size)
+{
+    return fails() ? NULL : hold(__real_aligned_alloc(alignment, size));
+}
+
+void __wrap_free(void *memory)
+{
+    held -= memory != NULL;
+    __real_free(memory);
 }
 
 /* Whatever allocation fails, the scheduler is as it was: it has its axes and the columns of its trace, and runs. */
@@ -145,21 +170,6 @@ START_TEST(test_a_bus_for_which_there_is_no_memory_changes_nothing)
 }
 END_TEST
 
-/** Bytes of the heap that are in use once more, after some times, when the heap has its pieces. */
-static size_t used_by_failure(cm1e_bus_t *bus, const cm1e_scheduler_config_t *config, int which)
-{
-    size_t used[2]; /* what asserts of Check take is not between them */
-    cm1e_error_t error = CM1E_OK;
-    for (int again = 0; again < 8; again++) {
-        countdown = which;
-        error = cm1e_scheduler_create(&scheduler, bus, config, &diag);
-        used[again % 2] = mallinfo2().uordblks;
-    }
-    ck_assert_int_eq(error, CM1E_ERROR_NO_MEMORY);
-    ck_assert(countdown == 0 && !scheduler && strstr(diag.text, "memory"));
-    return used[1] - used[0];
-}
-
 /** Whatever allocation fails: it is told, and what was allocated before is given back. */
 START_TEST(test_a_scheduler_for_which_there_is_no_memory_is_refused)
 {
@@ -171,8 +181,15 @@ START_TEST(test_a_scheduler_for_which_there_is_no_memory_is_refused)
     countdown = 0;
     cm1e_scheduler_destroy(scheduler);
     ck_assert_int_gt(allocations, 5); /* the scheduler, the axis, the trace, the log */
-    for (int which = 1; which <= allocations; which++)
-        ck_assert_uint_eq(used_by_failure(bus, &config, which), 0);
+    for (int which = 1; which <= allocations; which++) {
+        const int before = held;
+        countdown = which;
+        const cm1e_error_t error = cm1e_scheduler_create(&scheduler, bus, &config, &diag);
+        const int more = held - before;
+        ck_assert_int_eq(error, CM1E_ERROR_NO_MEMORY);
+        ck_assert(countdown == 0 && !scheduler && strstr(diag.text, "memory"));
+        ck_assert_int_eq(more, 0);
+    }
     must(cm1e_scheduler_create(&scheduler, bus, &config, &diag));
     must(cm1e_scheduler_run(scheduler, 20 * MS_IN_NS, &diag));
     cm1e_scheduler_destroy(scheduler);
@@ -205,6 +222,36 @@ START_TEST(test_numbers_of_a_task_are_refused_outside_of_their_bounds)
     }
     cm1e_scheduler_destroy(scheduler);
     cm1e_bus_close(bus);
+}
+END_TEST
+
+static void stop_in_the_tenth(void *context)
+{
+    int *cycles = context;
+    if (++*cycles == 10)
+        cm1e_scheduler_stop(scheduler);
+}
+
+/** A run that was stopped has not run its time, and one without an end has none. */
+START_TEST(test_whether_a_run_ran_its_time)
+{
+    static const struct {
+        int64_t duration_ns;
+        bool stops, ran;
+    } rows[] = {{20 * MS_IN_NS, false, true}, {20 * MS_IN_NS + 1, false, true}, {1, false, true}, {20 * MS_IN_NS, true, false},
+                {10 * MS_IN_NS, true, true}, {0, true, false}};
+    for (size_t i = 0; i < sizeof rows / sizeof rows[0]; i++) {
+        int cycles = 0;
+        cm1e_bus_t *bus = start_bus("X", 1);
+        const cm1e_task_config_t task = {.name = "t", .program = stop_in_the_tenth, .context = &cycles};
+        must(cm1e_scheduler_create(&scheduler, bus, NULL, &diag));
+        if (rows[i].stops)
+            must(cm1e_scheduler_add_task(scheduler, &task, &diag));
+        must(cm1e_scheduler_run(scheduler, rows[i].duration_ns, &diag));
+        ck_assert_msg(cm1e_scheduler_ran_its_time(scheduler) == rows[i].ran, "row %zu", i);
+        cm1e_scheduler_destroy(scheduler);
+        cm1e_bus_close(bus);
+    }
 }
 END_TEST
 
@@ -241,6 +288,7 @@ int main(void)
     tcase_add_test(all, test_a_bus_for_which_there_is_no_memory_changes_nothing);
     tcase_add_test(all, test_a_scheduler_for_which_there_is_no_memory_is_refused);
     tcase_add_test(all, test_numbers_of_a_task_are_refused_outside_of_their_bounds);
+    tcase_add_test(all, test_whether_a_run_ran_its_time);
     tcase_add_test(all, test_numbers_of_a_scheduler_are_refused_outside_of_their_bounds);
     suite_add_tcase(suite, all);
     SRunner *runner = srunner_create(suite);

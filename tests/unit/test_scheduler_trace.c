@@ -320,6 +320,46 @@ static void test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring
     cm1e_trace_free(&trace);
 }
 
+/** A variable has the digits that give its value back, and no more. */
+static void test_csv_has_the_digits_of_a_variable(void)
+{
+    static const double values[] = {0.1, 1.0 / 3.0, 5e-324, -1e300, 4503599627370497.5};
+    trace_t trace;
+    const trace_column_t column = {.name = "v", .type = CM1E_TRACE_LREAL, .value = values};
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_init(&trace, NULL, 0, 5, 1, NULL));
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_add(&trace, &column, NULL));
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_begin(&trace, NULL));
+    for (uint32_t n = 0; n < 5; n++)
+        cm1e_trace_next_sample(&trace, n * INT64_C(1000000))[trace.column_count - 1] = values[n];
+    TEST_ASSERT_EQUAL(CM1E_OK, cm1e_trace_write_file(&trace, csv_path, cm1e_trace_print_csv, NULL));
+    size_t size;
+    char *csv = read_file(csv_path, &size), *line = csv;
+    for (int n = 0; n < 5; n++) {
+        line = strchr(line, '\n') + 1;
+        const char *last = strchr(line, '\n') - 1;
+        while (*last != ',')
+            last--;
+        TEST_ASSERT_EQUAL_DOUBLE(values[n], strtod(last + 1, NULL));
+        TEST_ASSERT_TRUE(values[n] == strtod(last + 1, NULL));
+        TEST_ASSERT_TRUE(n > 0 || strncmp(last, ",0.1\n", 5) == 0);
+    }
+    free(csv);
+    cm1e_trace_free(&trace);
+}
+
+static void test_a_sample_begins_with_zeros_also_after_the_ring_went_round(void)
+{
+    trace_t trace = make_trace(2, 3);
+    for (uint32_t n = 0; n < 7; n++) {
+        double *sample = cm1e_trace_next_sample(&trace, n);
+        for (uint32_t i = 0; i < trace.column_count; i++) {
+            TEST_ASSERT_EQUAL_DOUBLE(0.0, sample[i]);
+            sample[i] = 7.0;
+        }
+    }
+    cm1e_trace_free(&trace);
+}
+
 /* ---- files ----------------------------------------------------------------------------------------------------- */
 
 static void test_numbers_have_a_point_in_every_locale(void)
@@ -421,6 +461,8 @@ int main(void)
     RUN_TEST(test_svg_of_an_empty_trace_says_so);
     RUN_TEST(test_one_of_so_many_cycles_is_recorded_from_the_first_one_on);
     RUN_TEST(test_a_number_of_64_bits_is_whole_with_its_rest);
+    RUN_TEST(test_csv_has_the_digits_of_a_variable);
+    RUN_TEST(test_a_sample_begins_with_zeros_also_after_the_ring_went_round);
     RUN_TEST(test_csv_has_a_row_a_sample_in_the_order_of_time_also_after_the_ring_went_round);
     RUN_TEST(test_numbers_have_a_point_in_every_locale);
     RUN_TEST(test_old_file_stays_until_the_new_one_is_whole);
