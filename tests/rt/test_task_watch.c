@@ -3,6 +3,7 @@
  * real time, because on virtual time nothing shows how long a task takes.
  */
 #include <dirent.h>
+#include <fcntl.h>
 #include <math.h>
 #include <pthread.h>
 #include <signal.h>
@@ -381,7 +382,12 @@ START_TEST(test_signals_of_the_program_are_for_its_own_threads)
     t.machine = (machine_t){.axis_count = 1, .real_time = true};
     machine_open(&t.machine);
     machine_add(&t.machine, "", 0, 0, count_threads, counts);
+    const int input = dup(STDIN_FILENO);
+    close(STDIN_FILENO); /* the next file that is opened gets its number, and is closed all the same */
     machine_run(&t.machine, 50 * MS);
+    ck_assert_int_eq(fcntl(STDIN_FILENO, F_GETFD), -1);
+    dup2(input, STDIN_FILENO);
+    close(input);
     ck_assert_int_ge(counts[0], 1);
     ck_assert_int_eq(counts[1], 0);
     machine_close(&t.machine);
