@@ -382,6 +382,8 @@ START_TEST(test_signals_of_the_program_are_for_its_own_threads)
     t.machine = (machine_t){.axis_count = 1, .real_time = true};
     machine_open(&t.machine);
     machine_add(&t.machine, "", 0, 0, count_threads, counts);
+    const cm1e_task_config_t unwatched = {.name = "free", .program = living_program, .watchdog_cycles = -1, .priority = 1};
+    ck_assert_int_eq(cm1e_scheduler_add_task(t.machine.scheduler, &unwatched, NULL), CM1E_OK);
     const int input = dup(STDIN_FILENO);
     close(STDIN_FILENO); /* the next file that is opened gets its number, and is closed all the same */
     machine_run(&t.machine, 50 * MS);
