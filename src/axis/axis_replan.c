@@ -36,6 +36,19 @@ cm1e_error_t cm1e_axis_replan_as(cm1e_axis_t *axis, const move_t *as)
     return error;
 }
 
+/* Behind lost frames or a pause, the deceleration and the jerk of a command may no longer end before a software limit:
+ * its motor has another velocity, without an acceleration, or has run on. The axis may brake harder. */
+static cm1e_error_t plan_harder(cm1e_axis_t *axis, const from_t *from, move_t *move, cm1e_profile_t *profile)
+{
+    move_t harder = *move;
+    harder.deceleration = axis->limits.maximum.deceleration;
+    harder.jerk = axis->limits.maximum.jerk;
+    const cm1e_error_t error = cm1e_axis_plan(axis, from, &harder, true, profile);
+    if (error == CM1E_OK)
+        move->target = harder.target;
+    return error;
+}
+
 /* What was accepted goes on within what the application allows now, but for the braking that it needs to reach its
  * target. */
 cm1e_error_t cm1e_axis_replan_anew(cm1e_axis_t *axis)
@@ -47,6 +60,8 @@ cm1e_error_t cm1e_axis_replan_anew(cm1e_axis_t *axis)
     cm1e_error_t error = cm1e_axis_plan(axis, &from, &move, true, &profile);
     if (axis->commands.lowered && cm1e_axis_goes_wrong(axis, &from, &move, &profile, error))
         error = cm1e_axis_plan_as_before(axis, &from, &move, &profile);
+    if (error == CM1E_ERROR_AXIS_POSITION_RANGE)
+        error = plan_harder(axis, &from, &move, &profile);
     if (error == CM1E_OK)
         go_on_as(axis, &from, &move, &profile);
     return error;
