@@ -59,10 +59,9 @@ static bool foreign(const cm1e_axis_t *axis)
 
 double cm1e_axis_backlash_slip(const cm1e_axis_t *axis) { return sign(axis) * axis->backlash.slip; }
 
-bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis)
-{
-    return axis->backlash.offset_velocity == 0.0 && !(catches(axis) && axis->backlash.offset != axis->backlash.seen);
-}
+bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis) { return axis->backlash.offset_velocity == 0.0; }
+
+bool cm1e_axis_backlash_is_seen(const cm1e_axis_t *axis) { return axis->backlash.offset == axis->backlash.seen; }
 
 static double in_gap(const backlash_t *b, double place) { return fmax(-b->gap, fmin(place, 0.0)); }
 

@@ -14,9 +14,9 @@ double cm1e_axis_backlash_offset(const cm1e_axis_t *axis);
 double cm1e_axis_backlash_velocity(const cm1e_axis_t *axis);
 /** Way of a motor without torque relative to its load in this cycle, in counts. */
 double cm1e_axis_backlash_slip(const cm1e_axis_t *axis);
-/** Whether no crossing is under way. While a motor is brought to rest that turned when it got its torque: whether the
- *  offset is what its positions say. */
 bool cm1e_axis_backlash_at_rest(const cm1e_axis_t *axis);
+/** Whether the offset is what the positions of the motor say: without torque it may take as long as a crossing. */
+bool cm1e_axis_backlash_is_seen(const cm1e_axis_t *axis);
 /* The next two are called only for an axis with a gap. */
 void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts);
 void cm1e_axis_backlash_step(cm1e_axis_t *axis);

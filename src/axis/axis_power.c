@@ -481,7 +481,8 @@ static void take_over_or_brake(cm1e_axis_t *axis)
     }
     if (axis_free(axis))
         brake_or_hold(axis);
-    if (!axis_holds(axis) || !(shows_motor(axis) || paused(axis)) || !ramp_is_over(axis))
+    if (!axis_holds(axis) || !(shows_motor(axis) || paused(axis)) || !ramp_is_over(axis) ||
+        !(cm1e_axis_backlash_is_seen(axis) || swing_is_over(axis)))
         return;
     if (!axis->power.held || !swing_is_over(axis)) {
         take_over(axis);
