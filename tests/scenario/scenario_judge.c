@@ -504,11 +504,11 @@ static void judge_torque(run_t *run, machine_axis_t *axis)
 }
 
 /** Whether the master knows how fast a motor turns that has just got its torque: some cycles of torque show it, behind a
- *  pause in these once more (docs/SAFETY.md). */
+ *  pause in these once more, and one more then, because the first frame behind it may come at once (docs/SAFETY.md). */
 static bool velocity_is_known(const witness_t *seen)
 {
     enum { UNKNOWN = 5 };
-    const bool paused = seen->caught - seen->stalled <= UNKNOWN && seen->stalled <= UNKNOWN;
+    const bool paused = seen->caught - seen->stalled <= UNKNOWN && seen->stalled <= UNKNOWN + 1;
     return seen->caught > UNKNOWN && !paused;
 }
 
