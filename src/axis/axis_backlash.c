@@ -46,7 +46,7 @@ double cm1e_axis_backlash_offset(const cm1e_axis_t *axis) { return sign(axis) * 
 double cm1e_axis_backlash_velocity(const cm1e_axis_t *axis) { return sign(axis) * axis->backlash.offset_velocity; }
 
 /* Whether the motor has torque, and is not taken over yet: its target is that of a motor that comes to rest. */
-static bool catches(const cm1e_axis_t *axis)
+static bool waits_to_be_taken_over(const cm1e_axis_t *axis)
 {
     return !axis->power.energized && !axis_free(axis) && !drive_moves(axis);
 }
@@ -54,7 +54,7 @@ static bool catches(const cm1e_axis_t *axis)
 /* Whether the motor does not follow set-points of the load. */
 static bool foreign(const cm1e_axis_t *axis)
 {
-    return axis_free(axis) || catches(axis) || (drive_homes(axis) && axis->homing_hooks->is_away(axis));
+    return axis_free(axis) || waits_to_be_taken_over(axis) || (drive_homes(axis) && axis->homing_hooks->is_away(axis));
 }
 
 double cm1e_axis_backlash_slip(const cm1e_axis_t *axis) { return sign(axis) * axis->backlash.slip; }
@@ -78,8 +78,8 @@ void cm1e_axis_backlash_track(cm1e_axis_t *axis, int32_t moved_counts)
         return;
     b->target = b->offset = in_gap(b, b->seen + fmax(off - step, fmin(0.0, off + step)));
     b->slip = b->offset - before;
-    if (catches(axis) && b->slip != 0.0) /* the target of the motor stays where it is */
-        cm1e_axis_shift_motion(axis, sign(axis) * -b->slip);
+    if (waits_to_be_taken_over(axis) && b->slip != 0.0) /* the target of the motor stays where it is */
+        cm1e_axis_shift_motion(axis, -cm1e_axis_backlash_slip(axis));
 }
 
 /* Moves the offset on by a cycle: as fast as allowed, and slow enough to stop at its target. */
